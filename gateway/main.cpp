@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   try {
-    return axisgate::app::run_command_line(argc, argv);
+    return axisgate::commands::run_command_line(argc, argv);
   } catch (const std::exception& error) {
     // Only start-up throws, and it says in its message what to change.
     std::fprintf(stderr, "axisgate: %s\n", error.what());

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "adapters/bus/exchange.hpp"
+#include "gateway/core/numbers.hpp"
 
 namespace axisgate::bus {
 
@@ -16,12 +17,6 @@ namespace axisgate::bus {
 /// `cause`: reads what names a fault that was just seen, before anything but stops.
 enum class Priority : std::uint8_t { stop, cause, command, interactive, setup, poll };
 inline constexpr std::size_t kPriorityCount = 6;
-
-/// Position of a drive in the configuration of its bus.
-using DriveSlot = std::uint8_t;
-/// Position of an axis in its drive; kNoAxis where the bus job is the whole drive's.
-using AxisSlot = std::uint8_t;
-inline constexpr AxisSlot kNoAxis = 0xFF;
 
 inline constexpr std::size_t kMaxJobsPerBus = 64;
 inline constexpr std::size_t kMaxJobsPerAxis = 8;

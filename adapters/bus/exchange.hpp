@@ -6,24 +6,14 @@
 
 #include <array>
 #include <boost/container/static_vector.hpp>
-#include <compare>
 #include <cstdint>
 
 #include "gateway/core/bytes.hpp"
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/core/object_address.hpp"
 
 namespace axisgate::bus {
-
-/// An object inside a drive: CiA 301 index and sub-index on CANopen and Kinco's serial protocol; the register and 0 on
-/// Modbus RTU; index and sub on Keya's CAN; on Keya's serial protocols 0x2100 + query code and 0 for what is asked,
-/// 0x200D (on) and 0x2000 (value) with the motor's number 1 or 2 for what is commanded.
-struct ObjectAddress {
-  std::uint16_t index = 0;
-  std::uint8_t sub = 0;
-  std::uint8_t byte = 0;  ///< Keya: one answer holds several objects; this one begins here, from 0, in its data
-  friend auto operator<=>(const ObjectAddress&, const ObjectAddress&) = default;
-};
 
 enum class Access : std::uint8_t {
   read,

@@ -126,7 +126,7 @@ std::string request_text(Bytes bytes) {
 
 }  // namespace
 
-std::string object_text(bus::ObjectAddress object) { return fmt::format("{:04X}:{:02X}", object.index, object.sub); }
+std::string object_text(ObjectAddress object) { return fmt::format("{:04X}:{:02X}", object.index, object.sub); }
 
 std::string describe(const can::CanFrame& frame) {
   const auto id = frame.extended ? std::nullopt : cob_id(frame.id);

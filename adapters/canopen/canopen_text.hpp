@@ -12,7 +12,7 @@
 namespace axisgate::canopen {
 
 /// "6041:00".
-[[nodiscard]] std::string object_text(bus::ObjectAddress object);
+[[nodiscard]] std::string object_text(ObjectAddress object);
 
 [[nodiscard]] std::string describe(const can::CanFrame& frame);
 

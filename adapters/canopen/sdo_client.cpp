@@ -44,15 +44,15 @@ bool same_request(const SdoReply& a, const SdoReply& b) {
 
 }  // namespace
 
-bus::ObjectAddress SdoClient::object_of(const Transfer& transfer) {
+ObjectAddress SdoClient::object_of(const Transfer& transfer) {
   return std::visit([](const auto& t) { return t.object(); }, transfer);
 }
 
-bool SdoClient::Server::may_still_answer(bus::ObjectAddress object) const {
+bool SdoClient::Server::may_still_answer(ObjectAddress object) const {
   return gave_up_more || std::find(given_up.begin(), given_up.end(), object) != given_up.end();
 }
 
-void SdoClient::Server::give_up(bus::ObjectAddress object) {
+void SdoClient::Server::give_up(ObjectAddress object) {
   if (may_still_answer(object)) return;
   if (given_up.size() == given_up.capacity())
     gave_up_more = true;
@@ -60,7 +60,7 @@ void SdoClient::Server::give_up(bus::ObjectAddress object) {
     given_up.push_back(object);
 }
 
-void SdoClient::Server::answered(bus::ObjectAddress object) {
+void SdoClient::Server::answered(ObjectAddress object) {
   if (!may_still_answer(object)) given_up.clear();
 }
 
@@ -142,7 +142,7 @@ SdoClient::Heard SdoClient::not_mine(Server& server, bool waited_for, Bytes byte
   const bool again =
       server.finished && now - server.finished->at <= duplicate_window_ && same_request(server.finished->reply, *reply);
   if (again && server.owed == 0) return {Heard::What::second_reply, {}, acknowledges_write(*reply)};
-  const bool names = names_object(reply->kind) && reply->object != bus::ObjectAddress{};
+  const bool names = names_object(reply->kind) && reply->object != ObjectAddress{};
   if (waited_for && names && reply->object != object_of(*server.transfer) && !server.may_still_answer(reply->object))
     server.stranger = reply->object;
   if (server.owed > 0) --server.owed;
@@ -152,7 +152,7 @@ SdoClient::Heard SdoClient::not_mine(Server& server, bool waited_for, Bytes byte
 SdoClient::Abandoned SdoClient::abandon() {
   if (!outstanding_) return {};
   Server& server = servers_.at(*outstanding_);
-  const bus::ObjectAddress object = object_of(*server.transfer);
+  const ObjectAddress object = object_of(*server.transfer);
   Abandoned abandoned{{abort_frame(object, kAbortTimedOut)}};
   if (const auto stranger = std::exchange(server.stranger, std::nullopt))
     abandoned.instead = Instead{object, *stranger};
@@ -166,7 +166,7 @@ SdoClient::Abandoned SdoClient::abandon() {
 SdoFrames SdoClient::interrupt(std::uint8_t node) {
   Server& server = servers_.at(node);
   if (!server.transfer) return {};
-  const bus::ObjectAddress object = object_of(*server.transfer);
+  const ObjectAddress object = object_of(*server.transfer);
   server.transfer.reset();
   server.finished.reset();
   server.give_up(object);

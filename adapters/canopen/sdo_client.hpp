@@ -43,8 +43,8 @@ class SdoClient {
 
   /// What a server was asked for and what it answered in its place.
   struct Instead {
-    bus::ObjectAddress asked;
-    bus::ObjectAddress answered;
+    ObjectAddress asked;
+    ObjectAddress answered;
   };
   struct Abandoned {
     SdoFrames frames{};
@@ -76,17 +76,17 @@ class SdoClient {
     std::uint8_t owed = 0;  ///< replies to requests that were given up
     /// Objects of requests that were given up, or ended by an abort of ours, which may still be answered. A server
     /// answers in order: the answer to another object shows that nothing of it comes any more.
-    boost::container::static_vector<bus::ObjectAddress, kMaxGivenUp> given_up{};
-    bool gave_up_more = false;                     ///< than `given_up` holds: until the node or the link restarts
-    std::optional<bus::ObjectAddress> stranger{};  ///< answered, while another object was waited for
+    boost::container::static_vector<ObjectAddress, kMaxGivenUp> given_up{};
+    bool gave_up_more = false;                ///< than `given_up` holds: until the node or the link restarts
+    std::optional<ObjectAddress> stranger{};  ///< answered, while another object was waited for
 
     [[nodiscard]] bool may_still_answer() const { return gave_up_more || !given_up.empty(); }
-    [[nodiscard]] bool may_still_answer(bus::ObjectAddress object) const;
-    void give_up(bus::ObjectAddress object);
-    void answered(bus::ObjectAddress object);
+    [[nodiscard]] bool may_still_answer(ObjectAddress object) const;
+    void give_up(ObjectAddress object);
+    void answered(ObjectAddress object);
   };
 
-  [[nodiscard]] static bus::ObjectAddress object_of(const Transfer& transfer);
+  [[nodiscard]] static ObjectAddress object_of(const Transfer& transfer);
   [[nodiscard]] static SdoFrame named(const Server& server, Bytes bytes);
   [[nodiscard]] Heard not_mine(Server& server, bool waited_for, Bytes bytes, Instant now) const;
 

@@ -11,12 +11,12 @@ constexpr std::uint8_t kWhole = 4;
 
 std::uint8_t width(std::uint8_t size) { return size == 0 ? kWhole : size; }
 
-bool lies_within(const bus::ObjectAddress& object, std::uint8_t size, std::size_t available) {
+bool lies_within(const ObjectAddress& object, std::uint8_t size, std::size_t available) {
   const std::uint8_t bytes = width(size);
   return (bytes == 1 || bytes == 2 || bytes == 4) && std::size_t{object.byte} + bytes <= available;
 }
 
-bus::ReplyField field(const bus::ObjectAddress& object, std::uint8_t size, Bytes data) {
+bus::ReplyField field(const ObjectAddress& object, std::uint8_t size, Bytes data) {
   return {object, width(size), load_be(data, object.byte, width(size))};
 }
 

@@ -12,10 +12,10 @@ namespace axisgate::keya {
 namespace {
 
 /// The order of the fields of a control frame: on A, on B, value A, value B.
-constexpr std::array<bus::ObjectAddress, 4> kFields{{{kOnIndex, 1}, {kOnIndex, 2}, {kValueIndex, 1}, {kValueIndex, 2}}};
+constexpr std::array<ObjectAddress, 4> kFields{{{kOnIndex, 1}, {kOnIndex, 2}, {kValueIndex, 1}, {kValueIndex, 2}}};
 
 /// No value: not among the fields written.
-std::optional<bus::Neighbour> written(const bus::Exchange& exchange, const bus::ObjectAddress& object) {
+std::optional<bus::Neighbour> written(const bus::Exchange& exchange, const ObjectAddress& object) {
   if (exchange.object == object) return bus::Neighbour{object, exchange.size, exchange.raw};
   const auto found = std::ranges::find(exchange.more, object, &bus::Neighbour::object);
   return found == exchange.more.end() ? std::nullopt : std::optional(*found);
@@ -38,7 +38,7 @@ std::optional<bus::ExchangeResult> refusal_of_read(KeyaLine line, const bus::Exc
 std::optional<bus::ExchangeResult> refusal_of_serial_write(const bus::Exchange& exchange) {
   if (std::ranges::find(kFields, exchange.object) == kFields.end()) return refused(kNoObject);
   if (exchange.more.size() != kFields.size() - 1 || exchange.bytes) return refused(kUnsupportedAccess);
-  for (const bus::ObjectAddress& object : kFields) {
+  for (const ObjectAddress& object : kFields) {
     const auto field = written(exchange, object);
     if (!field) return refused(kUnsupportedAccess);
     const bool on = object.index == kOnIndex;

@@ -11,7 +11,7 @@
 
 namespace axisgate::keya {
 
-// Objects, as bus::ObjectAddress says them: a query is kQueryIndex + code, sub 0; a control frame is all four of
+// Objects, as ObjectAddress says them: a query is kQueryIndex + code, sub 0; a control frame is all four of
 // kOnIndex and kValueIndex with the motor as sub-index, 1 = A and 2 = B.
 inline constexpr std::uint16_t kQueryIndex = 0x2100;
 inline constexpr std::uint16_t kOnIndex = 0x200D;

@@ -53,7 +53,7 @@ enum class Command : std::uint8_t {
 struct Frame {
   std::uint8_t node = 0;
   Command command = Command::read;
-  bus::ObjectAddress object;
+  ObjectAddress object;
   std::uint32_t data = 0;  ///< all four data bytes, least significant first; a drive may fill unused ones with FF
   friend bool operator==(const Frame&, const Frame&) = default;
 };

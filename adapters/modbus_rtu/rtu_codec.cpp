@@ -66,7 +66,7 @@ Judgement judge_read(Bytes frame, const bus::Exchange& exchange, const RtuNode& 
   const Bytes registers = frame.subspan(kDataAt);
   if (registers.size() != 2 * registers_asked(exchange)) return NotMine::wrong_length;
   bus::ExchangeResult result;
-  const auto take = [&](bus::ObjectAddress object, std::uint8_t size) {
+  const auto take = [&](ObjectAddress object, std::uint8_t size) {
     const auto first = static_cast<std::size_t>(object.index - exchange.object.index);
     result.fields.push_back({object, size, value_at(registers, first, size, node.low_word_first)});
   };

@@ -15,7 +15,7 @@
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/config/bus_budget.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 namespace {
 
 using std::chrono::milliseconds;
@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 3> kClassNames{"fast", "normal", "slow"};
 constexpr double kRegisterReach = 2147483647;
 constexpr double kFloatNumbers = 16777216;  // 2^24
 
-std::string polls_text(const BusBudget& budget) {
+std::string polls_text(const config::BusBudget& budget) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < budget.classes.size(); ++i) {
     parts.push_back(
@@ -34,23 +34,24 @@ std::string polls_text(const BusBudget& budget) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string suggestion(const BusBudget& budget) {
-  const auto periods = comfortable_periods(budget);
+std::string suggestion(const config::BusBudget& budget) {
+  const auto periods = config::comfortable_periods(budget);
   return fmt::format("\"poll\": {{\"fast\": {:.0f}, \"normal\": {:.0f}, \"slow\": {:.0f}}}", in_ms(periods[0]),
                      in_ms(periods[1]), in_ms(periods[2]));
 }
 
 /// "5 ms", or "5 to 20 ms" where some drives state a longer time than is assumed of the others.
-std::string answers_text(const std::vector<drive::DriveModel>& drives) {
-  if (drives.empty()) return fmt::format("{:.0f} ms", in_ms(kAssumedAnswer));
-  const auto [quickest, slowest] =
-      std::minmax_element(drives.begin(), drives.end(),
-                          [](const auto& one, const auto& other) { return answer_of(one) < answer_of(other); });
-  if (answer_of(*quickest) == answer_of(*slowest)) return fmt::format("{:.0f} ms", in_ms(answer_of(*slowest)));
-  return fmt::format("{:.0f} to {:.0f} ms", in_ms(answer_of(*quickest)), in_ms(answer_of(*slowest)));
+std::string answers_text(const std::vector<model::DriveModel>& drives) {
+  if (drives.empty()) return fmt::format("{:.0f} ms", in_ms(config::kAssumedAnswer));
+  const auto [quickest, slowest] = std::minmax_element(
+      drives.begin(), drives.end(),
+      [](const auto& one, const auto& other) { return config::answer_of(one) < config::answer_of(other); });
+  if (config::answer_of(*quickest) == config::answer_of(*slowest))
+    return fmt::format("{:.0f} ms", in_ms(config::answer_of(*slowest)));
+  return fmt::format("{:.0f} to {:.0f} ms", in_ms(config::answer_of(*quickest)), in_ms(config::answer_of(*slowest)));
 }
 
-void add_load(std::string& out, const BusBudget& budget, const std::vector<drive::DriveModel>& drives) {
+void add_load(std::string& out, const config::BusBudget& budget, const std::vector<model::DriveModel>& drives) {
   add_line(out, "planned load",
            fmt::format("{:.1f} % with drives that answer after {}, {:.1f} % on the wire alone",
                        budget.load_answered / 10.0, answers_text(drives), budget.load_on_wire / 10.0));
@@ -59,26 +60,26 @@ void add_load(std::string& out, const BusBudget& budget, const std::vector<drive
         out, "OVERLOADED",
         fmt::format("more than the line carries: the polls would stretch, fast values come each {:.0f} ms; write {}",
                     in_ms(budget.cycle), suggestion(budget)));
-  } else if (budget.load_answered > kComfortablePermille) {
+  } else if (budget.load_answered > config::kComfortablePermille) {
     add_line(out, "note", fmt::format("commands have little room beside the polls; better: {}", suggestion(budget)));
   }
 }
 
 /// Keya: what goes over the line beside the polls.
-void add_keya(std::string& out, const BusConfig& bus, const BusBudget& budget) {
+void add_keya(std::string& out, const config::BusConfig& bus, const config::BusBudget& budget) {
   if (budget.kept_alive.reads > 0)
     add_line(out, "keep-alive",
              fmt::format("{} writes each {:.0f} ms, with every axis enabled", budget.kept_alive.reads,
                          in_ms(budget.kept_alive.period)));
-  if (adapter::keya(bus.adapter) && budget.load_unsolicited > 0)
+  if (config::adapter::keya(bus.adapter) && budget.load_unsolicited > 0)
     add_line(out, "unasked",
              fmt::format("heartbeats of the drives: {:.1f} % of the line", budget.load_unsolicited / 10.0));
 }
 
-void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::DriveModel>& drives,
-             const BusBudget& budget) {
-  const bool can = bus.adapter == adapter::kCanopen;
-  const std::string speed = adapter::on_can(bus.adapter) ? bitrate_text(bus) : fmt::format("{} baud", bus.baud);
+void add_bus(std::string& out, const config::BusConfig& bus, const std::vector<model::DriveModel>& drives,
+             const config::BusBudget& budget) {
+  const bool can = bus.adapter == config::adapter::kCanopen;
+  const std::string speed = config::adapter::on_can(bus.adapter) ? bitrate_text(bus) : fmt::format("{} baud", bus.baud);
   out += fmt::format("\nBus {}: {} on {}, {}{}\n", bus.name, bus.adapter, bus.device, speed,
                      bus.cascade ? ", drives in a chain" : "");
   std::vector<std::string> names;
@@ -87,7 +88,7 @@ void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
   add_line(out, "drives", fmt::format("{}", fmt::join(names, ", ")));
   add_line(out, "polls", polls_text(budget));
   if (can) add_lines(out, can_lines(bus, drives, budget));
-  if (bus.adapter == adapter::kKeyaCan) add_line(out, "interface", interface_text(bus));
+  if (bus.adapter == config::adapter::kKeyaCan) add_line(out, "interface", interface_text(bus));
   add_keya(out, bus, budget);
   add_load(out, budget, drives);
   add_line(out, "cycle",
@@ -102,10 +103,11 @@ void add_bus(std::string& out, const BusConfig& bus, const std::vector<drive::Dr
 }
 
 /// A request that is given up before its answer can be there: each one makes a drive suspect, three of them offline.
-std::vector<std::string> timeout_warnings(const LoadedConfig& loaded, const std::vector<BusBudget>& budgets) {
+std::vector<std::string> timeout_warnings(const config::LoadedConfig& loaded,
+                                          const std::vector<config::BusBudget>& budgets) {
   std::vector<std::string> out;
   for (std::size_t b = 0; b < budgets.size(); ++b) {
-    const BusConfig& bus = loaded.config.buses[b];
+    const config::BusConfig& bus = loaded.config.buses[b];
     const Duration needed = budgets[b].exchange;
     if (loaded.models[b].empty() || bus.timeout >= needed) continue;
     out.push_back(fmt::format(
@@ -116,7 +118,7 @@ std::vector<std::string> timeout_warnings(const LoadedConfig& loaded, const std:
   return out;
 }
 
-std::string missing_quantities(const drive::AxisModel& axis) {
+std::string missing_quantities(const model::AxisModel& axis) {
   std::vector<std::string_view> names;
   for (const QuantityRow& quantity : quantity_table()) {
     if (!axis.supports(quantity.quantity)) names.push_back(quantity.name);
@@ -124,7 +126,7 @@ std::string missing_quantities(const drive::AxisModel& axis) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string missing_commands(const drive::AxisModel& axis) {
+std::string missing_commands(const model::AxisModel& axis) {
   std::vector<std::string_view> names;
   for (auto number = static_cast<std::uint8_t>(Command::enable);
        number <= static_cast<std::uint8_t>(Command::save_parameters); ++number) {
@@ -135,16 +137,17 @@ std::string missing_commands(const drive::AxisModel& axis) {
 }
 
 /// How far the drive's own counter reaches before it wraps.
-std::string counter_text(const AxisConfig& config, const drive::AxisModel& axis, const drive::DriveModel& drive) {
-  const drive::Binding* position = axis.binding(Quantity::position_actual);
-  if (position == nullptr || position->object == drive::kNoObject) return "";
+std::string counter_text(const config::AxisConfig& config, const model::AxisModel& axis,
+                         const model::DriveModel& drive) {
+  const model::Binding* position = axis.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == model::kNoObject) return "";
   const auto reach = position->to_register(drive.object(position->object).range().max);
   if (!reach) return "";
   return fmt::format(", the drive's counter ±{:.1f}",
                      std::abs(static_cast<double>(*reach) / config.units_per_rev.to_double()));
 }
 
-std::string units_text(const AxisConfig& config) {
+std::string units_text(const config::AxisConfig& config) {
   const Rational& units = config.units_per_rev;
   const std::string number = units.denominator() == 1 ? fmt::format("{}", units.numerator())
                                                       : fmt::format("{}/{}", units.numerator(), units.denominator());
@@ -153,7 +156,7 @@ std::string units_text(const AxisConfig& config) {
 }
 
 /// A binary32 has 24 bits: below a power of two turns each position unit has a number of its own.
-std::string float_text(const AxisConfig& config) {
+std::string float_text(const config::AxisConfig& config) {
   const double turns = std::exp2(std::floor(std::log2(kFloatNumbers / config.units_per_rev.to_double())));
   return fmt::format("on listeners with \"numbers\": \"float\" each unit has its own number up to ±{:g} turns", turns);
 }
@@ -175,21 +178,21 @@ void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
 
 }  // namespace
 
-CheckReport check(const LoadedConfig& loaded) {
-  const Config& config = loaded.config;
+CheckReport report(const config::LoadedConfig& loaded) {
+  const config::Config& config = loaded.config;
   CheckReport report;
   std::string& out = report.text;
   out = fmt::format("{} is valid.\n", config.file);
-  std::vector<BusBudget> budgets;
+  std::vector<config::BusBudget> budgets;
   const bool floats = std::any_of(config.modbus_tcp.begin(), config.modbus_tcp.end(),
                                   [](const auto& listener) { return listener.float_numbers; });
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
-    const BusConfig& bus = config.buses[b];
-    budgets.push_back(plan_bus(timing_of(bus), loaded.models[b]));
+    const config::BusConfig& bus = config.buses[b];
+    budgets.push_back(config::plan_bus(config::timing_of(bus), loaded.models[b]));
     report.overloaded |= budgets[b].overloaded();
     add_bus(out, bus, loaded.models[b], budgets[b]);
     for (std::size_t d = 0; d < bus.drives.size(); ++d) {
-      const drive::DriveModel& model = loaded.models[b][d];
+      const model::DriveModel& model = loaded.models[b][d];
       for (std::size_t a = 0; a < model.axes.size(); ++a)
         add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b], config.dds}, floats);
     }
@@ -206,4 +209,4 @@ CheckReport check(const LoadedConfig& loaded) {
   return report;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

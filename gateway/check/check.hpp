@@ -8,13 +8,13 @@
 
 #include "gateway/config/config_loader.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 
 struct CheckReport {
   std::string text;  ///< lines, each ended by a newline
   bool overloaded = false;
 };
 
-[[nodiscard]] CheckReport check(const LoadedConfig& loaded);
+[[nodiscard]] CheckReport report(const config::LoadedConfig& loaded);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

@@ -8,26 +8,26 @@
 
 #include "adapters/can/can_device.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 namespace {
 
 /// "statusword, position_actual at most each 5 ms"
-std::string tpdo_text(const drive::DriveModel& model, const drive::TpdoProperties& tpdo) {
+std::string tpdo_text(const model::DriveModel& model, const model::TpdoProperties& tpdo) {
   std::vector<std::string_view> names;
-  for (const drive::ObjectId id : tpdo.map) names.push_back(model.object(id).name);
+  for (const model::ObjectId id : tpdo.map) names.push_back(model.object(id).name);
   std::string out = fmt::format("{}", fmt::join(names, ", "));
   if (tpdo.inhibit_time > Duration{}) out += fmt::format(" at most each {:g} ms", in_ms(tpdo.inhibit_time));
   if (tpdo.event_ms) out += fmt::format(", at least each {} ms", *tpdo.event_ms);
   return out;
 }
 
-std::string mapping_text(const drive::DriveModel& model) {
+std::string mapping_text(const model::DriveModel& model) {
   std::vector<std::string> parts;
-  for (const drive::TpdoProperties& tpdo : model.canopen.tpdos) parts.push_back(tpdo_text(model, tpdo));
+  for (const model::TpdoProperties& tpdo : model.canopen.tpdos) parts.push_back(tpdo_text(model, tpdo));
   return parts.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string watched_text(const drive::CanopenProperties& facts) {
+std::string watched_text(const model::CanopenProperties& facts) {
   if (facts.heartbeat > Duration{}) return fmt::format("heartbeat each {:g} ms", in_ms(facts.heartbeat));
   if (facts.guard_time > Duration{})
     return fmt::format("guarded each {:g} ms, gone after {}", in_ms(facts.guard_time), facts.life_factor);
@@ -36,9 +36,9 @@ std::string watched_text(const drive::CanopenProperties& facts) {
 
 /// Each text with the nodes it is true of, so that ten equal drives take one line.
 template <class Text>
-void add_by_node(ReportLines& out, const std::string& label, const std::vector<drive::DriveModel>& drives, Text text) {
+void add_by_node(ReportLines& out, const std::string& label, const std::vector<model::DriveModel>& drives, Text text) {
   std::vector<std::pair<std::string, std::vector<int>>> lines;
-  for (const drive::DriveModel& model : drives) {
+  for (const model::DriveModel& model : drives) {
     const std::string said = text(model);
     const auto same = [&](const auto& line) { return line.first == said; };
     auto at = std::find_if(lines.begin(), lines.end(), same);
@@ -55,11 +55,11 @@ void add_by_node(ReportLines& out, const std::string& label, const std::vector<d
 
 }  // namespace
 
-std::string bitrate_text(const BusConfig& bus) {
+std::string bitrate_text(const config::BusConfig& bus) {
   return fmt::format("{} bit/s{}", bus.bitrate, bus.bitrate_given ? "" : " assumed");
 }
 
-std::string interface_text(const BusConfig& bus) {
+std::string interface_text(const config::BusConfig& bus) {
   if (can::parse_can_device(bus.device).lawicel)
     return fmt::format("a serial CAN adapter, which the gateway opens at {} bit/s", bus.bitrate);
   const std::string how = fmt::format("ip link set {} up type can bitrate {} restart-ms 100", bus.device, bus.bitrate);
@@ -70,12 +70,13 @@ std::string interface_text(const BusConfig& bus) {
       how);
 }
 
-ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>& drives, const BusBudget& budget) {
+ReportLines can_lines(const config::BusConfig& bus, const std::vector<model::DriveModel>& drives,
+                      const config::BusBudget& budget) {
   ReportLines out;
   out.emplace_back("interface", interface_text(bus));
   add_by_node(out, "by TPDO", drives, mapping_text);
   out.emplace_back("", "the mapping is tried at bring-up: what a drive refuses is polled by SDO like the rest");
-  add_by_node(out, "watched by", drives, [](const drive::DriveModel& model) { return watched_text(model.canopen); });
+  add_by_node(out, "watched by", drives, [](const model::DriveModel& model) { return watched_text(model.canopen); });
   out.emplace_back("confirmed",
                    budget.confirmed.reads == 0
                        ? std::string("nothing")
@@ -88,4 +89,4 @@ ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

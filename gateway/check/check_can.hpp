@@ -10,13 +10,13 @@
 #include "gateway/check/check_lines.hpp"
 #include "gateway/config/bus_budget.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 
 /// "500000 bit/s"
-[[nodiscard]] std::string bitrate_text(const BusConfig& bus);
+[[nodiscard]] std::string bitrate_text(const config::BusConfig& bus);
 /// How the interface or adapter is brought up.
-[[nodiscard]] std::string interface_text(const BusConfig& bus);
-[[nodiscard]] ReportLines can_lines(const BusConfig& bus, const std::vector<drive::DriveModel>& drives,
-                                    const BusBudget& budget);
+[[nodiscard]] std::string interface_text(const config::BusConfig& bus);
+[[nodiscard]] ReportLines can_lines(const config::BusConfig& bus, const std::vector<model::DriveModel>& drives,
+                                    const config::BusBudget& budget);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

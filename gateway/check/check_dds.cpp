@@ -9,7 +9,7 @@
 #include "gateway/upstream/dds/dds_session.hpp"
 #include "gateway/upstream/dds_link/ros_names.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 namespace {
 
 using dds::DdsSettings;
@@ -90,7 +90,8 @@ ReportLines dds_lines(const DdsSettings& settings) {
   return out;
 }
 
-ReportLines dds_master_lines(const DdsSettings& settings, const AxisConfig& axis, const BusBudget& budget) {
+ReportLines dds_master_lines(const DdsSettings& settings, const config::AxisConfig& axis,
+                             const config::BusBudget& budget) {
   const LeaseRules& lease = axis.lease;
   if (!settings.commands || most_rights(settings) == Role::viewer) return {};
   ReportLines out;
@@ -113,4 +114,4 @@ ReportLines dds_master_lines(const DdsSettings& settings, const AxisConfig& axis
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

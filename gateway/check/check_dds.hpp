@@ -8,14 +8,14 @@
 #include "gateway/config/bus_budget.hpp"
 #include "gateway/config/config.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 
 /// "DDS: domain 0 on lo".
 [[nodiscard]] std::string dds_title(const dds::DdsSettings& settings);
 [[nodiscard]] ReportLines dds_lines(const dds::DdsSettings& settings);
 
 /// Of one axis, as far as DDS clients may own it. `budget`: of its bus.
-[[nodiscard]] ReportLines dds_master_lines(const dds::DdsSettings& settings, const AxisConfig& axis,
-                                           const BusBudget& budget);
+[[nodiscard]] ReportLines dds_master_lines(const dds::DdsSettings& settings, const config::AxisConfig& axis,
+                                           const config::BusBudget& budget);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

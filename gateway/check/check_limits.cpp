@@ -6,13 +6,13 @@
 
 #include "gateway/profile/resolve/limit_keys.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 namespace {
 
-std::vector<std::string_view> keys_of(const AxisLimits& limits) {
+std::vector<std::string_view> keys_of(const config::AxisLimits& limits) {
   std::vector<std::string_view> keys;
   const auto add = [&keys](const auto& limit, Quantity quantity) {
-    if (limit) keys.push_back(drive::limit_key(quantity));
+    if (limit) keys.push_back(profile::limit_key(quantity));
   };
   add(limits.position, Quantity::target_position);
   add(limits.velocity, Quantity::target_velocity);
@@ -23,10 +23,10 @@ std::vector<std::string_view> keys_of(const AxisLimits& limits) {
 }
 
 /// What this key is for, where nobody can write any of it on this drive; else nothing.
-std::vector<std::string_view> bounded_in_vain(std::string_view key, const drive::AxisModel& axis) {
+std::vector<std::string_view> bounded_in_vain(std::string_view key, const model::AxisModel& axis) {
   std::vector<std::string_view> names;
   for (const QuantityRow& each : quantity_table()) {
-    if (drive::limit_key(each.quantity) != key) continue;
+    if (profile::limit_key(each.quantity) != key) continue;
     if (axis.takes(each.quantity)) return {};
     names.push_back(each.name);
   }
@@ -35,13 +35,13 @@ std::vector<std::string_view> bounded_in_vain(std::string_view key, const drive:
 
 constexpr double kPerRpm = 1000, kPerPercent = 10, kPerRpmEachSecond = 10;
 
-bool turns_to_positions(const drive::AxisModel& axis) { return axis.takes(Quantity::target_position); }
-bool has_velocity(const drive::AxisModel& axis) {
+bool turns_to_positions(const model::AxisModel& axis) { return axis.takes(Quantity::target_position); }
+bool has_velocity(const model::AxisModel& axis) {
   return axis.takes(Quantity::target_velocity) || axis.takes(Quantity::profile_velocity);
 }
 
 /// 3000 for 3000 rpm is 3 rpm: nobody means so little.
-void warn_about_units(const AxisConfig& config, const drive::AxisModel& axis, const std::string& file,
+void warn_about_units(const config::AxisConfig& config, const model::AxisModel& axis, const std::string& file,
                       std::vector<std::string>& out) {
   constexpr double kLeast = 10, kLeastPart = 0.01;
   if (!config.limits.velocity) return;
@@ -55,7 +55,7 @@ void warn_about_units(const AxisConfig& config, const drive::AxisModel& axis, co
                             rpm * kPerRpm));
 }
 
-void warn_about(const AxisConfig& config, const drive::AxisModel& axis, const drive::DriveModel& drive,
+void warn_about(const config::AxisConfig& config, const model::AxisModel& axis, const model::DriveModel& drive,
                 const std::string& file, std::vector<std::string>& out) {
   const auto warn = [&](std::string_view key, const std::string& what) {
     out.push_back(fmt::format("{}: {}/limits/{}: {}", file, config.pointer, key, what));
@@ -70,7 +70,7 @@ void warn_about(const AxisConfig& config, const drive::AxisModel& axis, const dr
                                 !axis.takes(Quantity::profile_velocity);
   const auto warn_of_own_speed = [&](bool at_its_own, std::string_view motion, std::string_view speed) {
     if (config.limits.velocity && at_its_own)
-      warn(drive::limit_key(Quantity::target_velocity),
+      warn(profile::limit_key(Quantity::target_velocity),
            fmt::format(
                "does not reach {}: of {} no {} is known that could be written; set a safe one in the drive itself",
                motion, drive.title, speed));
@@ -81,8 +81,8 @@ void warn_about(const AxisConfig& config, const drive::AxisModel& axis, const dr
 
 }  // namespace
 
-ReportLines limit_lines(const AxisConfig& config, const drive::AxisModel& axis) {
-  const AxisLimits& limits = config.limits;
+ReportLines limit_lines(const config::AxisConfig& config, const model::AxisModel& axis) {
+  const config::AxisLimits& limits = config.limits;
   const double units = config.units_per_rev.to_double();
   std::vector<std::string> parts;
   if (limits.velocity)
@@ -106,14 +106,14 @@ ReportLines limit_lines(const AxisConfig& config, const drive::AxisModel& axis) 
   return {{"limits", fmt::format("{}", fmt::join(parts, "; "))}};
 }
 
-std::vector<std::string> limit_warnings(const LoadedConfig& loaded) {
+std::vector<std::string> limit_warnings(const config::LoadedConfig& loaded) {
   std::vector<std::string> out;
   std::vector<AxisNumber> any_speed, any_position;
   for (std::size_t b = 0; b < loaded.models.size(); ++b)
     for (std::size_t d = 0; d < loaded.models[b].size(); ++d) {
-      const drive::DriveModel& drive = loaded.models[b][d];
+      const model::DriveModel& drive = loaded.models[b][d];
       for (std::size_t a = 0; a < drive.axes.size(); ++a) {
-        const AxisConfig& config = loaded.config.buses[b].drives[d].axes[a];
+        const config::AxisConfig& config = loaded.config.buses[b].drives[d].axes[a];
         warn_about(config, drive.axes[a], drive, loaded.config.file, out);
         warn_about_units(config, drive.axes[a], loaded.config.file, out);
         if (!config.limits.velocity && has_velocity(drive.axes[a])) any_speed.push_back(config.number);
@@ -133,4 +133,4 @@ std::vector<std::string> limit_warnings(const LoadedConfig& loaded) {
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

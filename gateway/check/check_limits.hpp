@@ -10,9 +10,9 @@
 #include "gateway/check/check_lines.hpp"
 #include "gateway/config/config_loader.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 
-[[nodiscard]] ReportLines limit_lines(const AxisConfig& config, const drive::AxisModel& axis);
-[[nodiscard]] std::vector<std::string> limit_warnings(const LoadedConfig& loaded);
+[[nodiscard]] ReportLines limit_lines(const config::AxisConfig& config, const model::AxisModel& axis);
+[[nodiscard]] std::vector<std::string> limit_warnings(const config::LoadedConfig& loaded);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

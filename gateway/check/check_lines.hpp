@@ -13,7 +13,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 
 /// Label and line, in their order; an empty label goes on with the one before.
 using ReportLines = std::vector<std::pair<std::string, std::string>>;
@@ -28,4 +28,4 @@ inline void add_lines(std::string& out, const ReportLines& lines) {
   for (const auto& [label, line] : lines) add_line(out, label, line);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

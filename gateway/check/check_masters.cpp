@@ -10,7 +10,7 @@
 #include "gateway/check/check_dds.hpp"
 #include "gateway/model/loss.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 namespace {
 
 /// A lease shorter than so many of the longest waits for the bus would run out under a client that is alive.
@@ -32,26 +32,26 @@ std::string name_of(LeaseAction action) {
   return action == LeaseAction::quick_stop ? "quick stop" : std::string(axisgate::text(command_of(action)));
 }
 
-bool has_stop_option(const drive::DriveModel& drive) {
+bool has_stop_option(const model::DriveModel& drive) {
   return std::any_of(drive.objects.begin(), drive.objects.end(),
-                     [](const drive::ObjectDef& object) { return object.name == "quick_stop_option"; });
+                     [](const model::ObjectDef& object) { return object.name == "quick_stop_option"; });
 }
 
 /// A wait that is not the last step is for the motor to stand, before the steps that take the torque away.
-bool decelerates(const drive::Steps& steps) {
-  return std::any_of(steps.begin(), steps.end(), [&](const drive::Step& step) {
-    return step.verb == drive::Step::Verb::wait && &step != &steps.back();
+bool decelerates(const model::Steps& steps) {
+  return std::any_of(steps.begin(), steps.end(), [&](const model::Step& step) {
+    return step.verb == model::Step::Verb::wait && &step != &steps.back();
   });
 }
 
-const drive::Steps& steps_in(const drive::CommandDef& command, std::int16_t mode) {
+const model::Steps& steps_in(const model::CommandDef& command, std::int16_t mode) {
   for (const auto& variant : command.variants)
     if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end()) return variant.steps;
   return command.steps;
 }
 
 /// A CiA 402 drive decelerates by itself; of a virtual one the steps tell.
-std::string torque_off_text(const drive::AxisModel& axis) {
+std::string torque_off_text(const model::AxisModel& axis) {
   const std::string ramp = "it decelerates, then the torque goes";
   const auto& command = axis.command(Command::quick_stop);
   if (!axis.virtual_axis || !command) return ramp;
@@ -108,21 +108,21 @@ void add_program_dies(ReportLines& out, const MasteredAxis& axis) {
   out.emplace_back("the stop", stop_text(axis));
 }
 
-std::string objects_told(const drive::DriveModel& drive) {
+std::string objects_told(const model::DriveModel& drive) {
   std::vector<std::string> written;
-  for (const drive::ObjectId id : drive.loss_objects) {
-    const bus::ObjectAddress address = drive.object(id).address;
+  for (const model::ObjectId id : drive.loss_objects) {
+    const ObjectAddress address = drive.object(id).address;
     written.push_back(fmt::format("{:04X}h:{:02X}", address.index, address.sub));
   }
   return fmt::format("{}", fmt::join(written, ", "));
 }
 
-std::string gateway_dies_text(const drive::DriveModel& drive) {
-  if (drive::loss_stop_ms(drive, true) == kGoesOn)
+std::string gateway_dies_text(const model::DriveModel& drive) {
+  if (model::loss_stop_ms(drive, true) == kGoesOn)
     return fmt::format(
         "THE DRIVE DOES NOT STOP BY ITSELF on {}: it goes on with what it was told last (alarm no_comm_watchdog)",
         drive.protocol);
-  const std::uint16_t within = drive::loss_stop_ms(drive, true);
+  const std::uint16_t within = model::loss_stop_ms(drive, true);
   const std::string ends = within == kLossNotKnown ? "WHETHER IT STOPS BY ITSELF IS NOT KNOWN"
                                                    : fmt::format("it begins to stop by itself within {} ms", within);
   const std::string noticed =
@@ -133,7 +133,7 @@ std::string gateway_dies_text(const drive::DriveModel& drive) {
 }
 
 /// "3, 4": the modes in which something is sent again.
-std::string kept_modes(const drive::AxisModel& axis) {
+std::string kept_modes(const model::AxisModel& axis) {
   std::vector<int> modes;
   for (const auto& [mode, object] : axis.keep_alive) modes.push_back(mode);
   return fmt::format("{}", fmt::join(modes, ", "));
@@ -169,10 +169,10 @@ void add_vertical(ReportLines& out, const MasteredAxis& axis) {
 // --- Warnings ----------------------------------------------------------------------------------------------------
 
 template <class Function>
-void each_axis(const LoadedConfig& loaded, const std::vector<BusBudget>& budgets, Function function) {
+void each_axis(const config::LoadedConfig& loaded, const std::vector<config::BusBudget>& budgets, Function function) {
   for (std::size_t b = 0; b < loaded.models.size(); ++b)
     for (std::size_t d = 0; d < loaded.models[b].size(); ++d) {
-      const drive::DriveModel& drive = loaded.models[b][d];
+      const model::DriveModel& drive = loaded.models[b][d];
       for (std::size_t a = 0; a < drive.axes.size(); ++a)
         function(MasteredAxis{loaded.config.buses[b].drives[d].axes[a], drive.axes[a], drive, budgets[b],
                               loaded.config.dds});
@@ -184,8 +184,8 @@ std::string axes_text(const std::vector<AxisNumber>& axes) {
   return fmt::format("{} {}", axes.size() == 1 ? "axis" : "axes", fmt::join(axes, ", "));
 }
 
-void warn_about_no_lease(std::vector<std::string>& out, const LoadedConfig& loaded,
-                         const std::vector<BusBudget>& budgets) {
+void warn_about_no_lease(std::vector<std::string>& out, const config::LoadedConfig& loaded,
+                         const std::vector<config::BusBudget>& budgets) {
   std::vector<AxisNumber> unwatched;
   std::vector<AxisNumber> kept;
   each_axis(loaded, budgets, [&](const MasteredAxis& axis) {
@@ -204,14 +204,14 @@ void warn_about_no_lease(std::vector<std::string>& out, const LoadedConfig& load
 }
 
 /// The longest that a client of any listener waits for its answer.
-Duration longest_answer(const Config& config) {
+Duration longest_answer(const config::Config& config) {
   Duration longest{};
   for (const auto& listener : config.modbus_tcp) longest = std::max(longest, listener.reply_deadline);
   return longest;
 }
 
-void warn_about_short_leases(std::vector<std::string>& out, const LoadedConfig& loaded,
-                             const std::vector<BusBudget>& budgets) {
+void warn_about_short_leases(std::vector<std::string>& out, const config::LoadedConfig& loaded,
+                             const std::vector<config::BusBudget>& budgets) {
   const Duration answer = longest_answer(loaded.config);
   each_axis(loaded, budgets, [&](const MasteredAxis& axis) {
     const LeaseRules& lease = axis.config.lease;
@@ -228,11 +228,11 @@ void warn_about_short_leases(std::vector<std::string>& out, const LoadedConfig& 
 }
 
 /// A keep-alive comes at least twice in the time of the drive's watchdog: one more period of waiting is too much.
-void warn_about_late_keep_alives(std::vector<std::string>& out, const LoadedConfig& loaded,
-                                 const std::vector<BusBudget>& budgets) {
+void warn_about_late_keep_alives(std::vector<std::string>& out, const config::LoadedConfig& loaded,
+                                 const std::vector<config::BusBudget>& budgets) {
   for (std::size_t b = 0; b < loaded.models.size(); ++b) {
     const bool alone = loaded.models[b].size() < 2;  // no other drive can be unresponsive
-    const BusBudget& budget = budgets[b];
+    const config::BusBudget& budget = budgets[b];
     if (alone || budget.kept_alive.reads == 0 || budget.command_wait_unresponsive <= budget.kept_alive.period) continue;
     out.push_back(fmt::format(
         "bus {}: beside an unresponsive drive a command may wait {:.0f} ms, longer than the {:.0f} ms of the "
@@ -242,7 +242,8 @@ void warn_about_late_keep_alives(std::vector<std::string>& out, const LoadedConf
   }
 }
 
-void hint_at_tools(std::vector<std::string>& out, const LoadedConfig& loaded, const std::vector<BusBudget>& budgets) {
+void hint_at_tools(std::vector<std::string>& out, const config::LoadedConfig& loaded,
+                   const std::vector<config::BusBudget>& budgets) {
   bool leased = false;
   each_axis(loaded, budgets, [&](const MasteredAxis& axis) { leased = leased || axis.config.lease.on; });
   std::vector<std::string> listeners;
@@ -256,8 +257,8 @@ void hint_at_tools(std::vector<std::string>& out, const LoadedConfig& loaded, co
 }
 
 /// Where a client is an address nobody can tell two programs of it apart: neither who commands, nor who is dead.
-void warn_about_shared_addresses(std::vector<std::string>& out, const LoadedConfig& loaded,
-                                 const std::vector<BusBudget>& budgets) {
+void warn_about_shared_addresses(std::vector<std::string>& out, const config::LoadedConfig& loaded,
+                                 const std::vector<config::BusBudget>& budgets) {
   std::vector<AxisNumber> leased, by_writes;
   each_axis(loaded, budgets, [&](const MasteredAxis& axis) {
     if (!axis.config.lease.on) return;
@@ -302,7 +303,8 @@ ReportLines master_lines(const MasteredAxis& axis) {
   return out;
 }
 
-std::vector<std::string> lease_warnings(const LoadedConfig& loaded, const std::vector<BusBudget>& budgets) {
+std::vector<std::string> lease_warnings(const config::LoadedConfig& loaded,
+                                        const std::vector<config::BusBudget>& budgets) {
   std::vector<std::string> out;
   warn_about_no_lease(out, loaded, budgets);
   warn_about_short_leases(out, loaded, budgets);
@@ -312,4 +314,4 @@ std::vector<std::string> lease_warnings(const LoadedConfig& loaded, const std::v
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

@@ -12,21 +12,21 @@
 #include "gateway/config/bus_budget.hpp"
 #include "gateway/config/config_loader.hpp"
 
-namespace axisgate::app {
+namespace axisgate::check {
 
 /// One axis with all that its fate hangs on.
 struct MasteredAxis {
-  const AxisConfig& config;
-  const drive::AxisModel& model;
-  const drive::DriveModel& drive;
-  const BusBudget& budget;  ///< of its bus
+  const config::AxisConfig& config;
+  const model::AxisModel& model;
+  const model::DriveModel& drive;
+  const config::BusBudget& budget;  ///< of its bus
   const std::optional<dds::DdsSettings>& dds;
 };
 
 [[nodiscard]] ReportLines master_lines(const MasteredAxis& axis);
 
 /// What is dangerous or will not work in the leases of this configuration; `budgets`: one per bus.
-[[nodiscard]] std::vector<std::string> lease_warnings(const LoadedConfig& loaded,
-                                                      const std::vector<BusBudget>& budgets);
+[[nodiscard]] std::vector<std::string> lease_warnings(const config::LoadedConfig& loaded,
+                                                      const std::vector<config::BusBudget>& budgets);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::check

@@ -13,15 +13,15 @@
 #include "gateway/upstream/dds_host/program.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 namespace {
 
 /// The loader compares names; which line a name leads to only this machine knows.
-void warn_of_lines_with_two_names(const Config& config) {
+void warn_of_lines_with_two_names(const config::Config& config) {
   constexpr std::string_view kSerialCan = "slcan:";
   std::map<std::filesystem::path, std::string> lines;
-  for (const BusConfig& bus : config.buses) {
+  for (const config::BusConfig& bus : config.buses) {
     std::error_code not_here;  // of another machine, or the name of a CAN interface
     const std::string path = bus.device.substr(bus.device.starts_with(kSerialCan) ? kSerialCan.size() : 0);
     const auto line = std::filesystem::canonical(path, not_here);
@@ -36,13 +36,14 @@ void warn_of_lines_with_two_names(const Config& config) {
 }  // namespace
 
 int run(const CheckOptions& options) {
-  const LoadResult result = load_config(options.config, options.profile_folders, drive::Pipes::allowed);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-  const auto& loaded = std::get<LoadedConfig>(result);
-  const CheckReport report = check(loaded);
+  const config::LoadResult result =
+      config::load_config(options.config, options.profile_folders, profile::Pipes::allowed);
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
+  const auto& loaded = std::get<config::LoadedConfig>(result);
+  const check::CheckReport report = check::report(loaded);
   fmt::print("{}", report.text);
   const auto descriptors =
-      modbus_tcp::plan_descriptors(modbus_tcp::descriptor_limits(), descriptor_needs(loaded.config));
+      modbus_tcp::plan_descriptors(modbus_tcp::descriptor_limits(), process::descriptor_needs(loaded.config));
   // The limit belongs to a process, not to the file: a service may have another.
   if (descriptors.limited()) fmt::print("warning: started from here, {}\n", modbus_tcp::text(descriptors));
   warn_of_lines_with_two_names(loaded.config);
@@ -59,4 +60,4 @@ int run(const CheckOptions& options) {
   return 1;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

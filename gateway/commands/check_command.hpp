@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct CheckOptions {
   std::string config;
@@ -17,4 +17,4 @@ struct CheckOptions {
 /// 0: right. 1: mistakes, or a bus over 100 %.
 [[nodiscard]] int run(const CheckOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -24,7 +24,7 @@
 #include "gateway/commands/topics_command.hpp"
 #include "gateway/manual/generate.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// Everything that options are read into; commands copy from it when they run.
@@ -331,4 +331,4 @@ int run_command_line(int argc, const char* const* argv) {
   return std::max(code, 1);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// What a command line asks for.
 struct CommandLine {
@@ -20,4 +20,4 @@ struct CommandLine {
 /// Parses and runs; the exit code of the process. 0: done. 1: the command says no. 2: the command line is wrong.
 [[nodiscard]] int run_command_line(int argc, const char* const* argv);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/commands/command_manual.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr const char* kManualEnd =
@@ -79,4 +79,4 @@ void add_manual_commands(CLI::App& app, ManualCommands& commands, std::function<
       "Example: axisgate stop 127.0.0.1:1502 1");
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -8,7 +8,7 @@
 
 #include "gateway/commands/manual/manual_command.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// One set of options for each command, for each is filled while the line is parsed.
 struct ManualCommands {
@@ -18,4 +18,4 @@ struct ManualCommands {
 /// `chosen` is set to what carries the command out; `commands` outlives it.
 void add_manual_commands(CLI::App& app, ManualCommands& commands, std::function<int()>& chosen);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

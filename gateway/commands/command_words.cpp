@@ -8,7 +8,7 @@
 
 #include "gateway/core/nearest.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 std::string none_of(const std::string& value, const std::vector<std::string>& words) {
@@ -86,4 +86,4 @@ std::string nearest_options(const CLI::App& app) {
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// A value that is one of these words; the message about another names the nearest one.
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
@@ -23,4 +23,4 @@ namespace axisgate::app {
 /// After a parse that failed, a line for each option that the command does not have and that is near one of its own.
 [[nodiscard]] std::string nearest_options(const CLI::App& app);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -12,7 +12,7 @@
 #include "gateway/image/register_map.hpp"
 #include "gateway/upstream/modbus_tcp/write/refused_blocks.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr std::uint32_t kRefusedRow = modbus_tcp::kDetailRow, kRefusedRowLast = kRefusedRow + 0xFF;
@@ -27,7 +27,7 @@ std::string told(const Word& word) {
          line("enable", word.refuses_enable ? "is refused while it is set" : "");
 }
 
-std::string told(const drive::Profile& profile, const drive::AlarmSpec& alarm) {
+std::string told(const profile::Profile& profile, const profile::AlarmSpec& alarm) {
   std::string out = fmt::format("0x{:04X} ({}", alarm.code, profile.title);
   if (alarm.value && *alarm.value != alarm.code) out += fmt::format(", its own code 0x{:X}", *alarm.value);
   return out + ", error_code)\n" + line("meaning", alarm.text) + line("remedy", alarm.remedy);
@@ -63,8 +63,8 @@ std::string explanation(const std::string& typed, const std::vector<std::string>
     if (const Word* word = find_error(static_cast<std::uint16_t>(*code)); word != nullptr)
       out += fmt::format("0x{:04X} is of the class\n", *code) + told(*word);
   if (*code == 0) return out;
-  for (const drive::Profile& profile : profiles_in(profile_folders))
-    for (const drive::AlarmSpec& alarm : profile.alarms)
+  for (const profile::Profile& profile : profiles_in(profile_folders))
+    for (const profile::AlarmSpec& alarm : profile.alarms)
       if (alarm.code == *code || alarm.value == *code) out += told(profile, alarm);
   return out;
 }
@@ -86,4 +86,4 @@ int run(const ExplainOptions& options) {
   return 1;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct ExplainOptions {
   std::vector<std::string> words;  ///< "result 9" comes as two; empty: all there is
@@ -21,4 +21,4 @@ struct ExplainOptions {
 /// Exit code 1: nothing is called so.
 [[nodiscard]] int run(const ExplainOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

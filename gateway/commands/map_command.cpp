@@ -8,18 +8,18 @@
 
 #include "gateway/commands/common/config_faults.hpp"
 #include "gateway/config/config_loader.hpp"
-#include "gateway/image/listing/map_listing.hpp"
+#include "gateway/listing/map_listing.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
-ListedAxis listed(const AxisConfig& config, const drive::AxisModel& model, const std::string& bus) {
-  ListedAxis axis;
+listing::ListedAxis listed(const config::AxisConfig& config, const model::AxisModel& model, const std::string& bus) {
+  listing::ListedAxis axis;
   axis.number = config.number;
   axis.name = config.name;
   axis.bus = bus;
   static_cast<Capabilities&>(axis) = model;
-  axis.position_unit = position_unit(config.units_per_rev.numerator(), config.units_per_rev.denominator());
+  axis.position_unit = listing::position_unit(config.units_per_rev.numerator(), config.units_per_rev.denominator());
   return axis;
 }
 
@@ -46,30 +46,31 @@ void tell_differences(const std::vector<Listener>& listeners, const Listener& sh
                  address_text(other.host, other.port), address_text(other.host, other.port));
 }
 
-ListedMap listed(const LoadedConfig& loaded, const Listener& listener) {
-  ListedMap map;
+listing::ListedMap listed(const config::LoadedConfig& loaded, const Listener& listener) {
+  listing::ListedMap map;
   map.low_word_first = listener.low_word_first;
   map.float_numbers = listener.float_numbers;
   for (std::size_t b = 0; b < loaded.config.buses.size(); ++b) {
-    const BusConfig& bus = loaded.config.buses[b];
+    const config::BusConfig& bus = loaded.config.buses[b];
     map.buses.push_back(bus.name);
     for (std::size_t d = 0; d < bus.drives.size(); ++d) {
-      const drive::DriveModel& model = loaded.models[b][d];
+      const model::DriveModel& model = loaded.models[b][d];
       for (std::size_t a = 0; a < model.axes.size(); ++a)
         map.axes.push_back(listed(bus.drives[d].axes[a], model.axes[a], bus.name));
     }
   }
   std::sort(map.axes.begin(), map.axes.end(),
-            [](const ListedAxis& a, const ListedAxis& b) { return a.number < b.number; });
+            [](const listing::ListedAxis& a, const listing::ListedAxis& b) { return a.number < b.number; });
   return map;
 }
 
 }  // namespace
 
 int run(const MapOptions& options) {
-  const LoadResult result = load_config(options.config, options.profile_folders, drive::Pipes::allowed);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-  const auto& loaded = std::get<LoadedConfig>(result);
+  const config::LoadResult result =
+      config::load_config(options.config, options.profile_folders, profile::Pipes::allowed);
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
+  const auto& loaded = std::get<config::LoadedConfig>(result);
   const std::vector<Listener>& listeners = loaded.config.modbus_tcp;
   const auto wanted = [&](const Listener& each) {
     return options.listener.empty() || address_text(each.host, each.port) == options.listener;
@@ -82,9 +83,9 @@ int run(const MapOptions& options) {
   }
   tell_differences(listeners, *listener);
   // The command line has checked the name.
-  const MapFormat format = map_format_named(options.format).value_or(MapFormat::table);
-  fmt::print("{}", map_text(listed(loaded, *listener), format));
+  const listing::MapFormat format = listing::map_format_named(options.format).value_or(listing::MapFormat::table);
+  fmt::print("{}", listing::map_text(listed(loaded, *listener), format));
   return 0;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

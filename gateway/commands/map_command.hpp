@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct MapOptions {
   std::string config;
@@ -19,4 +19,4 @@ struct MapOptions {
 
 [[nodiscard]] int run(const MapOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -15,14 +15,14 @@
 #include "gateway/profile/eds/eds_compare.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
-using drive::Profile;
+using profile::Profile;
 
 bool has_place(const Profile& profile, const std::string& object, std::string_view protocol) {
   for (std::size_t slot = 0; slot < profile.axes.size(); ++slot) {
-    const drive::Object* found = profile.find(object, static_cast<bus::AxisSlot>(slot));
+    const profile::Object* found = profile.find(object, static_cast<AxisSlot>(slot));
     if (found != nullptr && found->places.contains(protocol)) return true;
   }
   return false;
@@ -35,15 +35,15 @@ bool given(const Profile& profile, const QuantityRow& row, std::string_view prot
   constexpr std::array kEmulated{Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode};
   if (profile.state.is_virtual && std::find(kEmulated.begin(), kEmulated.end(), row.quantity) != kEmulated.end())
     return true;
-  const drive::QuantitySpec* quantity = profile.find(row.quantity);
+  const profile::QuantitySpec* quantity = profile.find(row.quantity);
   if (quantity == nullptr) return false;
   const auto place = [&](const std::string& object) { return has_place(profile, object, protocol); };
   return std::any_of(quantity->objects.begin(), quantity->objects.end(), place) ||
          std::any_of(quantity->bits.begin(), quantity->bits.end(),
-                     [&](const drive::BitsSpec& bits) { return place(bits.object); });
+                     [&](const profile::BitsSpec& bits) { return place(bits.object); });
 }
 
-void print_protocol(const Profile& profile, const std::string& protocol, const drive::ProtocolSpec& facts) {
+void print_protocol(const Profile& profile, const std::string& protocol, const profile::ProtocolSpec& facts) {
   std::vector<std::string_view> missing;
   std::size_t count = 0;
   for (const QuantityRow& quantity : quantity_table()) {
@@ -54,7 +54,7 @@ void print_protocol(const Profile& profile, const std::string& protocol, const d
     }
   }
   const auto objects = std::count_if(profile.objects.begin(), profile.objects.end(),
-                                     [&](const drive::Object& object) { return object.places.contains(protocol); });
+                                     [&](const profile::Object& object) { return object.places.contains(protocol); });
   fmt::print("  {:<14}{} objects, {} of {} quantities; {}\n", protocol, objects, count, kQuantityCount,
              facts.stops_by_itself() ? "stops by itself when the gateway dies"
                                      : "does not stop by itself when the gateway dies");
@@ -62,19 +62,19 @@ void print_protocol(const Profile& profile, const std::string& protocol, const d
 }
 
 /// The content; a fault where there is none to be had.
-std::variant<std::string, ConfigFault> content_of(const std::string& file) {
+std::variant<std::string, config::ConfigFault> content_of(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string text(drive::kMaxEdsBytes + 1, '\0');
+  std::string text(profile::kMaxEdsBytes + 1, '\0');
   if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad() || (!stream && stream.gcount() == 0 && !stream.eof()))
-    return ConfigFault{file, "", std::string("cannot be read: ") + std::strerror(errno)};
+    return config::ConfigFault{file, "", std::string("cannot be read: ") + std::strerror(errno)};
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }
 
-std::vector<ConfigFault> faults_of(const std::string& file, const drive::Eds& eds) {
-  std::vector<ConfigFault> out;
-  for (const drive::EdsFault& fault : eds.faults)
+std::vector<config::ConfigFault> faults_of(const std::string& file, const profile::Eds& eds) {
+  std::vector<config::ConfigFault> out;
+  for (const profile::EdsFault& fault : eds.faults)
     out.push_back({file, "", fault.line == 0 ? fault.message : fmt::format("line {}: {}", fault.line, fault.message)});
   return out;
 }
@@ -85,7 +85,7 @@ std::string printable(std::string text) {
   return text;
 }
 
-std::string identity_text(const drive::Eds& eds) {
+std::string identity_text(const profile::Eds& eds) {
   std::string out = fmt::format("{} {}", printable(eds.vendor_name), printable(eds.product_name));
   if (eds.vendor) out += fmt::format(", vendor {:#x}", *eds.vendor);
   if (eds.product) out += fmt::format(", product {:#x}", *eds.product);
@@ -93,18 +93,18 @@ std::string identity_text(const drive::Eds& eds) {
   return out;
 }
 
-int compare(const ProfileCheckOptions& options, const drive::LoadedProfile& loaded) {
+int compare(const ProfileCheckOptions& options, const profile::LoadedProfile& loaded) {
   const Profile& profile = loaded.profile;
   const auto text = content_of(options.eds);
-  if (const auto* fault = std::get_if<ConfigFault>(&text)) return tell({*fault});
-  const drive::Eds eds = drive::parse_eds(std::get<std::string>(text));
+  if (const auto* fault = std::get_if<config::ConfigFault>(&text)) return tell({*fault});
+  const profile::Eds eds = profile::parse_eds(std::get<std::string>(text));
   if (!eds.faults.empty()) return tell(faults_of(options.eds, eds));
   if (!profile.protocols.contains("canopen"))
     return tell({{options.file, "/protocols", "has no canopen, and an EDS describes nothing else"}});
   fmt::print("  {:<14}{}: {}, {} objects\n", "EDS", options.eds, identity_text(eds), eds.objects.size());
-  std::vector<ConfigFault> faults;
-  for (const drive::EdsContradiction& found : drive::contradictions(profile, eds)) {
-    const drive::Written written = drive::written_at(loaded.written, found.pointer);
+  std::vector<config::ConfigFault> faults;
+  for (const profile::EdsContradiction& found : profile::contradictions(profile, eds)) {
+    const profile::Written written = profile::written_at(loaded.written, found.pointer);
     faults.push_back({written.file, written.pointer,
                       fmt::format("{} [{}]: {}", options.eds, printable(found.section), printable(found.message))});
   }
@@ -116,10 +116,10 @@ int compare(const ProfileCheckOptions& options, const drive::LoadedProfile& load
 }  // namespace
 
 int run(const ProfileCheckOptions& options) {
-  const drive::LoadedProfile loaded = drive::load_profile(options.file, options.profile_folders);
-  std::vector<ConfigFault> faults;
-  for (const drive::Fault& fault : loaded.faults)
-    faults.push_back(ConfigFault{fault.file, fault.pointer, fault.message});
+  const profile::LoadedProfile loaded = profile::load_profile(options.file, options.profile_folders);
+  std::vector<config::ConfigFault> faults;
+  for (const profile::Fault& fault : loaded.faults)
+    faults.push_back(config::ConfigFault{fault.file, fault.pointer, fault.message});
   if (!faults.empty()) return tell(faults);
 
   const Profile& profile = loaded.profile;
@@ -129,4 +129,4 @@ int run(const ProfileCheckOptions& options) {
   return options.eds.empty() ? 0 : compare(options, loaded);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

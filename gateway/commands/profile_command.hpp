@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct ProfileCheckOptions {
   std::string file;
@@ -17,4 +17,4 @@ struct ProfileCheckOptions {
 
 [[nodiscard]] int run(const ProfileCheckOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -12,7 +12,7 @@
 
 #include "gateway/process/control_socket.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using boost::asio::local::stream_protocol;
@@ -22,13 +22,14 @@ using boost::system::error_code;
 class Asked {
  public:
   Asked(const std::string& config, std::string_view request) : socket_(io_) {
-    socket_.async_connect(stream_protocol::endpoint('\0' + control_name(config)), [this, request](error_code error) {
-      if (error) return refused_.assign(error.message()), void();
-      boost::asio::async_write(socket_, boost::asio::buffer(request), [this](error_code failed, std::size_t) {
-        if (failed) return;
-        boost::asio::async_read(socket_, boost::asio::dynamic_buffer(answer_), [](error_code, std::size_t) {});
-      });
-    });
+    socket_.async_connect(
+        stream_protocol::endpoint('\0' + process::control_name(config)), [this, request](error_code error) {
+          if (error) return refused_.assign(error.message()), void();
+          boost::asio::async_write(socket_, boost::asio::buffer(request), [this](error_code failed, std::size_t) {
+            if (failed) return;
+            boost::asio::async_read(socket_, boost::asio::dynamic_buffer(answer_), [](error_code, std::size_t) {});
+          });
+        });
   }
   /// It has come to its end in this time.
   [[nodiscard]] bool ends_within(Duration patience) {
@@ -49,14 +50,14 @@ class Asked {
 }  // namespace
 
 int run(const ReloadOptions& options) {
-  const auto alive = [&] { return Asked(options.config, kAliveRequest).ends_within(options.patience); };
+  const auto alive = [&] { return Asked(options.config, process::kAliveRequest).ends_within(options.patience); };
   const auto hangs = [&](std::string_view outcome) {
     fmt::print(stderr, "the gateway that runs with {} has not answered within {:g} s: it hangs, or was stopped; {}\n",
                options.config, static_cast<double>(options.patience.count()) / 1e9, outcome);
     return 1;
   };
   if (!alive()) return hangs("nothing was asked of it");
-  Asked asked(options.config, kReloadRequest);
+  Asked asked(options.config, process::kReloadRequest);
   while (!asked.ends_within(options.patience))
     if (!alive()) return hangs("whether anything was changed, its log will tell");
   if (!asked.connected()) {
@@ -71,10 +72,10 @@ int run(const ReloadOptions& options) {
     fmt::print(stderr, "no answer: the gateway has ended, or it runs as another user (ask as root, or as that user)\n");
     return 1;
   }
-  const bool done = answer.substr(0, first) == kReloadDone;
+  const bool done = answer.substr(0, first) == process::kReloadDone;
   if (!done) fmt::print(stderr, "refused, and nothing was changed:\n");
   fmt::print(done ? stdout : stderr, "{}", answer.substr(first + 1));
   return done ? 0 : 1;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

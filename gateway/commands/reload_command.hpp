@@ -8,7 +8,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct ReloadOptions {
   std::string config;
@@ -18,4 +18,4 @@ struct ReloadOptions {
 /// Exit code 0: done; 1: refused, or no gateway runs with this file, or it hangs.
 [[nodiscard]] int run(const ReloadOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

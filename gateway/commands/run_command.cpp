@@ -33,7 +33,7 @@
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server/server.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// When all drives are done, what their clients are told still has to leave this process.
@@ -43,23 +43,24 @@ constexpr Duration kLastAnswers = std::chrono::milliseconds(50);
 constexpr Duration kLogLooks = std::chrono::seconds(10);
 
 /// Names given with --decode; one that no bus has is a mistake of the command line, not passed over.
-std::optional<ConfigFault> switch_decode_on(Config& config, const std::vector<std::string>& names) {
+std::optional<config::ConfigFault> switch_decode_on(config::Config& config, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const auto bus =
         std::find_if(config.buses.begin(), config.buses.end(), [&](const auto& b) { return b.name == name; });
     if (bus == config.buses.end())
-      return ConfigFault{config.file, "/buses", fmt::format("no bus has the name {}, which --decode gives", name)};
+      return config::ConfigFault{config.file, "/buses",
+                                 fmt::format("no bus has the name {}, which --decode gives", name)};
     bus->decode = true;
   }
   return std::nullopt;
 }
 
 /// As the gateway runs with it: what the command line adds is in it.
-LoadResult load(const RunOptions& options) {
-  LoadResult result = load_config(options.config, options.profile_folders);
-  if (auto* loaded = std::get_if<LoadedConfig>(&result))
+config::LoadResult load(const RunOptions& options) {
+  config::LoadResult result = config::load_config(options.config, options.profile_folders);
+  if (auto* loaded = std::get_if<config::LoadedConfig>(&result))
     if (auto fault = switch_decode_on(loaded->config, options.decode))
-      return std::vector<ConfigFault>{std::move(*fault)};
+      return std::vector<config::ConfigFault>{std::move(*fault)};
   return result;
 }
 
@@ -67,10 +68,11 @@ std::string status_of(const ProcessImage& image) {
   return fmt::format("{} axes on {} buses", image.axes().size(), image.buses.size());
 }
 
-int serve(LoadedConfig loaded, const RunOptions& options) {
+int serve(config::LoadedConfig loaded, const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
-  Log log = stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
-  for (const StartLine& line : start_lines(loaded, AXISGATE_VERSION))
+  Log log =
+      process::stderr_log(options.decode.empty() ? options.log_level : std::max(options.log_level, LogLevel::debug));
+  for (const compose::StartLine& line : compose::start_lines(loaded, AXISGATE_VERSION))
     log.write(LogLevel::info, line.source, line.text, LogPace::each);
   boost::asio::io_context io(1);
   AsioRuntime runtime(io);
@@ -83,9 +85,9 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   log_looks->expires_at(runtime.now() + kLogLooks);
   EndSignals signals(io, log);
   std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
-  const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(descriptor_needs(loaded.config));
+  const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(process::descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
-  Gateway gateway(loaded.config, loaded.models, runtime, log, device_wires(io, runtime, log));
+  compose::Gateway gateway(loaded.config, loaded.models, runtime, log, process::device_wires(io, runtime, log));
   modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log,
                             {[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
                              [&](bool down) { gateway.report_listener_down(down); }});
@@ -106,15 +108,15 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
   if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
   if (dds) dds->start();
-  FileWatch file_watch(io, runtime, watched_files(loaded.config),
-                       [&](const std::string& file) { gateway.report_file_changed(file); });
-  LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
-  Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
-  Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
-                {gateway, server, dds ? &*dds : nullptr, file_watch, log});
-  const auto begin_reload = [&](const Reload::Done& done) {
+  process::FileWatch file_watch(io, runtime, config::watched_files(loaded.config),
+                                [&](const std::string& file) { gateway.report_file_changed(file); });
+  process::LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
+  process::Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
+  process::Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
+                         {gateway, server, dds ? &*dds : nullptr, file_watch, log});
+  const auto begin_reload = [&](const process::Reload::Done& done) {
     service.reloading();
-    reload.begin([&, done](const ReloadResult& result) {
+    reload.begin([&, done](const process::ReloadResult& result) {
       service.ready(status_of(gateway.image()));
       done(result);
     });
@@ -131,8 +133,8 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
         if (at_once) return end();
         gateway.close([&] { last_answers->expires_at(runtime.now() + kLastAnswers); });
       },
-      [&] { begin_reload([](const ReloadResult&) {}); });
-  const ControlSocket control(io, runtime, log, options.config, begin_reload);
+      [&] { begin_reload([](const process::ReloadResult&) {}); });
+  const process::ControlSocket control(io, runtime, log, options.config, begin_reload);
   service.ready(status_of(gateway.image()));
   io.run();
   if (dds) dds->stop();
@@ -143,11 +145,11 @@ int serve(LoadedConfig loaded, const RunOptions& options) {
 }  // namespace
 
 int run(const RunOptions& options) {
-  LoadResult result = load(options);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-  auto& loaded = std::get<LoadedConfig>(result);
+  config::LoadResult result = load(options);
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
+  auto& loaded = std::get<config::LoadedConfig>(result);
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
   return serve(std::move(loaded), options);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -9,7 +9,7 @@
 
 #include "gateway/core/log.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct RunOptions {
   std::string config;
@@ -20,4 +20,4 @@ struct RunOptions {
 
 [[nodiscard]] int run(const RunOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -13,15 +13,15 @@
 #include "gateway/config/config_loader.hpp"
 #include "gateway/upstream/dds_host/program.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// The network of the configuration, or the defaults; an exit code where there is none.
 std::variant<dds::DdsSettings, int> settings_of(const TopicsOptions& options) {
   if (options.config.empty()) return dds::DdsSettings{};
-  LoadResult result = load_config(options.config, options.profile_folders, drive::Pipes::allowed);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-  const Config& config = std::get<LoadedConfig>(result).config;
+  config::LoadResult result = config::load_config(options.config, options.profile_folders, profile::Pipes::allowed);
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
+  const config::Config& config = std::get<config::LoadedConfig>(result).config;
   if (config.dds) return *config.dds;
   fmt::print(stderr, "{}: there is no key \"dds\", so this gateway publishes no topics: add \"dds\": {{}}\n",
              options.config);
@@ -63,4 +63,4 @@ int run(const TopicsOptions& options) {
   return 1;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

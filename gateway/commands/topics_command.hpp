@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct TopicsOptions {
   std::string config;  ///< empty: none
@@ -23,4 +23,4 @@ struct TopicsOptions {
 
 [[nodiscard]] int run(const TopicsOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

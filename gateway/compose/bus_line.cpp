@@ -6,33 +6,33 @@
 
 #include "gateway/config/adapter_names.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
-BusLine::BusLine(const BusConfig& config, const std::vector<drive::DriveModel>& models, std::size_t place,
+BusLine::BusLine(const config::BusConfig& config, const std::vector<model::DriveModel>& models, std::size_t place,
                  const MakeWire& make_wire, const Surroundings& with)
     : image_(with.image) {
-  const std::uint32_t bit_rate = adapter::on_can(config.adapter) ? config.bitrate : 0;
+  const std::uint32_t bit_rate = config::adapter::on_can(config.adapter) ? config.bitrate : 0;
   bus::BusSettings settings{config.name, config.timeout, config.min_gap, config.settle, bit_rate};
   bus_ =
       std::make_unique<bus::Bus>(std::move(settings), models.size(), make_wire(config, models), with.runtime, with.log);
   if (config.decode) bus_->set_decode(true);
   for (std::size_t d = 0; d < models.size(); ++d) {
     std::vector<AxisImage*> images;
-    for (const drive::AxisModel& axis : models[d].axes)
+    for (const model::AxisModel& axis : models[d].axes)
       images.push_back(&image_.add_axis(axis.number, axis.name, static_cast<std::uint8_t>(place)));
-    drives_.push_back(std::make_unique<drive::Drive>(models[d], static_cast<bus::DriveSlot>(d), std::move(images),
-                                                     *bus_, with.runtime, with.events));
+    drives_.push_back(std::make_unique<drive::Drive>(models[d], static_cast<DriveSlot>(d), std::move(images), *bus_,
+                                                     with.runtime, with.events));
   }
 }
 
 void BusLine::retire() {
   for (const auto& drive : drives_)
-    for (const drive::AxisModel& axis : drive->model().axes) image_.remove_axis(axis.number);
+    for (const model::AxisModel& axis : drive->model().axes) image_.remove_axis(axis.number);
 }
 
 void BusLine::move_to(std::size_t place) {
   for (const auto& drive : drives_)
-    for (const drive::AxisModel& axis : drive->model().axes)
+    for (const model::AxisModel& axis : drive->model().axes)
       image_.find(axis.number)->bus = static_cast<std::uint8_t>(place);
 }
 
@@ -43,7 +43,7 @@ void BusLine::show(BusImage& shown) const {
   for (const auto& drive : drives_) {
     suspect = suspect || drive->link_state() == LinkState::suspect || drive->link_state() == LinkState::offline;
     for (std::size_t a = 0; a < drive->axis_count(); ++a)
-      slowest = std::max(slowest, drive->axis(static_cast<bus::AxisSlot>(a)).cycle());
+      slowest = std::max(slowest, drive->axis(static_cast<AxisSlot>(a)).cycle());
   }
   shown.name = name();
   shown.link = bus_->up() ? (suspect ? 2 : 1) : 0;
@@ -64,4 +64,4 @@ void BusLine::show(BusImage& shown) const {
   shown.echoes = s.echoes;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

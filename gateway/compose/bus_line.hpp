@@ -14,9 +14,10 @@
 #include "gateway/image/events.hpp"
 #include "gateway/image/process_image.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
-using MakeWire = std::function<std::unique_ptr<bus::Wire>(const BusConfig&, const std::vector<drive::DriveModel>&)>;
+using MakeWire =
+    std::function<std::unique_ptr<bus::Wire>(const config::BusConfig&, const std::vector<model::DriveModel>&)>;
 
 class BusLine {
  public:
@@ -28,7 +29,7 @@ class BusLine {
     EventRing& events;
   };
   /// `models` were checked together with `config`. `place`: of the bus in the configuration.
-  BusLine(const BusConfig& config, const std::vector<drive::DriveModel>& models, std::size_t place,
+  BusLine(const config::BusConfig& config, const std::vector<model::DriveModel>& models, std::size_t place,
           const MakeWire& make_wire, const Surroundings& with);
 
   void start() { bus_->start(); }
@@ -49,4 +50,4 @@ class BusLine {
   std::unique_ptr<bus::Bus> bus_;  ///< goes first: it calls the drives
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

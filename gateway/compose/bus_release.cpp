@@ -8,7 +8,7 @@
 
 #include "gateway/model/cia402.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 using drive::Disarming;
@@ -28,7 +28,7 @@ constexpr const char* kHasTorque = "has torque";
 
 /// No motor that has torque gets as far as to have its commands broken off.
 bool shows_torque(const AxisImage& axis) {
-  return drive::holds_motor(drive::state_of(static_cast<std::uint16_t>(axis[Quantity::statusword].value)));
+  return model::holds_motor(model::state_of(static_cast<std::uint16_t>(axis[Quantity::statusword].value)));
 }
 
 std::string found(Disarming::Outcome outcome) {
@@ -101,7 +101,7 @@ BusRelease::Reasons BusRelease::in_the_way() const {
   Reasons out;
   for (const drive::Drive* drive : drives_) {
     for (std::size_t slot = 0; slot < drive->axis_count(); ++slot) {
-      const drive::Axis& axis = drive->axis(static_cast<bus::AxisSlot>(slot));
+      const drive::Axis& axis = drive->axis(static_cast<AxisSlot>(slot));
       const std::string why = why_not(*drive, axis);
       if (!why.empty()) out.push_back(fmt::format("axis {} ({}) {}", axis.image().number, axis.image().name, why));
     }
@@ -121,9 +121,9 @@ std::string BusRelease::why_not(const drive::Drive& drive, const drive::Axis& ax
 bool BusRelease::commands_are_under_way() const {
   return std::ranges::any_of(drives_, [](const drive::Drive* drive) {
     for (std::size_t slot = 0; slot < drive->axis_count(); ++slot)
-      if (!drive->axis(static_cast<bus::AxisSlot>(slot)).idle()) return true;
+      if (!drive->axis(static_cast<AxisSlot>(slot)).idle()) return true;
     return false;
   });
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

@@ -13,7 +13,7 @@
 
 #include "gateway/compose/bus_line.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
 /// For each of its two steps: the reads of the state (and before them the end of commands), and the drives' forgetting
 /// of the gateway.
@@ -53,4 +53,4 @@ class BusRelease {
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

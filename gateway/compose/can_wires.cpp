@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 /// The shorter of two periods; 0 is none.
@@ -14,13 +14,13 @@ Duration shorter(Duration a, Duration b) {
 
 }  // namespace
 
-canopen::CanopenSettings canopen_settings(const BusConfig& bus, const std::vector<drive::DriveModel>& drives) {
+canopen::CanopenSettings canopen_settings(const config::BusConfig& bus, const std::vector<model::DriveModel>& drives) {
   canopen::CanopenSettings settings;
   settings.name = bus.name;
-  settings.own_node = drive::kOwnNode;
+  settings.own_node = model::kOwnNode;
   settings.timeout = bus.timeout;
-  for (const drive::DriveModel& drive : drives) {
-    const drive::CanopenProperties& facts = drive.canopen;
+  for (const model::DriveModel& drive : drives) {
+    const model::CanopenProperties& facts = drive.canopen;
     settings.own_heartbeat = shorter(settings.own_heartbeat, facts.own_heartbeat);
     settings.sync = shorter(settings.sync, facts.sync);
     settings.nodes.push_back({drive.node, facts.heartbeat, facts.guard_time, facts.life_factor, facts.sdo_block});
@@ -28,4 +28,4 @@ canopen::CanopenSettings canopen_settings(const BusConfig& bus, const std::vecto
   return settings;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

@@ -10,9 +10,9 @@
 #include "gateway/config/config.hpp"
 #include "gateway/model/model.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
-[[nodiscard]] canopen::CanopenSettings canopen_settings(const BusConfig& bus,
-                                                        const std::vector<drive::DriveModel>& drives);
+[[nodiscard]] canopen::CanopenSettings canopen_settings(const config::BusConfig& bus,
+                                                        const std::vector<model::DriveModel>& drives);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

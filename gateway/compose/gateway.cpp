@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 // How long "event loop slow" stays set, so that an HMI that polls once a second sees it.
@@ -41,7 +41,8 @@ std::string source_of(const ProcessImage& image, AxisNumber number) {
 
 }  // namespace
 
-Gateway::Gateway(const Config& config, const Models& models, Runtime& runtime, const Log& log, MakeWire make_wire)
+Gateway::Gateway(const config::Config& config, const Models& models, Runtime& runtime, const Log& log,
+                 MakeWire make_wire)
     : runtime_(runtime),
       log_(log),
       make_wire_(std::move(make_wire)),
@@ -62,8 +63,8 @@ Gateway::Gateway(const Config& config, const Models& models, Runtime& runtime, c
 
 Gateway::~Gateway() = default;
 
-std::unique_ptr<BusLine> Gateway::make_bus(const BusConfig& config, const std::vector<drive::DriveModel>& models,
-                                           std::size_t place) {
+std::unique_ptr<BusLine> Gateway::make_bus(const config::BusConfig& config,
+                                           const std::vector<model::DriveModel>& models, std::size_t place) {
   return std::make_unique<BusLine>(config, models, place, make_wire_,
                                    BusLine::Surroundings{runtime_, log_, image_, events_});
 }
@@ -73,7 +74,7 @@ void Gateway::find_places() {
   for (const auto& bus : buses_)
     for (const auto& drive : bus->drives())
       for (std::size_t a = 0; a < drive->axis_count(); ++a)
-        places_[drive->model().axes[a].number] = {drive.get(), static_cast<bus::AxisSlot>(a)};
+        places_[drive->model().axes[a].number] = {drive.get(), static_cast<AxisSlot>(a)};
 }
 
 void Gateway::start() {
@@ -84,7 +85,7 @@ void Gateway::start() {
 
 // --- Reload ----------------------------------------------------------------------------------------------------------
 
-void Gateway::reload(const ReloadPlan& plan, Config wanted, Models models,
+void Gateway::reload(const ReloadPlan& plan, config::Config wanted, Models models,
                      std::function<std::vector<std::string>()> last_word,
                      std::function<void(std::vector<std::string>)> done) {
   std::vector<BusLine*> leaving;
@@ -100,7 +101,7 @@ void Gateway::reload(const ReloadPlan& plan, Config wanted, Models models,
 }
 
 // Those that go first: a device, or an axis number, may be another bus's now.
-void Gateway::replace(const ReloadPlan& plan, const Config& wanted, const Models& models) {
+void Gateway::replace(const ReloadPlan& plan, const config::Config& wanted, const Models& models) {
   std::vector<std::unique_ptr<BusLine>> before = std::exchange(buses_, {});
   places_.fill({});
   for (const std::size_t place : plan.leaving_buses) {
@@ -244,4 +245,4 @@ std::uint16_t Gateway::gateway_alarms() const {
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

@@ -18,10 +18,10 @@
 #include "gateway/image/events.hpp"
 #include "gateway/image/process_image.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
 /// Per bus, per drive, in configuration order.
-using Models = std::vector<std::vector<drive::DriveModel>>;
+using Models = std::vector<std::vector<model::DriveModel>>;
 /// The end on purpose takes at most so long, whatever the buses do.
 inline constexpr Duration kClosing = std::chrono::seconds(3);
 
@@ -31,7 +31,7 @@ inline constexpr Duration kSlowLoop = std::chrono::milliseconds(50);
 class Gateway final : public CommandPort {
  public:
   /// `config` and `models` were checked together (config_loader).
-  Gateway(const Config& config, const Models& models, Runtime& runtime, const Log& log, MakeWire make_wire);
+  Gateway(const config::Config& config, const Models& models, Runtime& runtime, const Log& log, MakeWire make_wire);
   ~Gateway() override;
 
   /// Opens the wires. A device that is missing is picked up when it appears.
@@ -45,7 +45,8 @@ class Gateway final : public CommandPort {
   /// that are new begin. All of it or nothing: `done` is called once, in a turn of its own, with the reasons why
   /// nothing was done. `last_word` is asked when the buses are to be released, and may still give such reasons.
   /// One at a time; not while the gateway ends. When the gateway ends meanwhile, nothing is done.
-  void reload(const ReloadPlan& plan, Config wanted, Models models, std::function<std::vector<std::string>()> last_word,
+  void reload(const ReloadPlan& plan, config::Config wanted, Models models,
+              std::function<std::vector<std::string>()> last_word,
               std::function<void(std::vector<std::string> why_not)> done);
   [[nodiscard]] bool reloads() const { return bus_release_ != nullptr; }
   [[nodiscard]] bool ends() const { return stopping_; }
@@ -85,13 +86,13 @@ class Gateway final : public CommandPort {
  private:
   struct Place {
     drive::Drive* drive = nullptr;
-    bus::AxisSlot slot = 0;
+    AxisSlot slot = 0;
   };
   void drive_closed();
-  [[nodiscard]] std::unique_ptr<BusLine> make_bus(const BusConfig& config, const std::vector<drive::DriveModel>& models,
-                                                  std::size_t place);
+  [[nodiscard]] std::unique_ptr<BusLine> make_bus(const config::BusConfig& config,
+                                                  const std::vector<model::DriveModel>& models, std::size_t place);
   void find_places();
-  void replace(const ReloadPlan& plan, const Config& wanted, const Models& models);
+  void replace(const ReloadPlan& plan, const config::Config& wanted, const Models& models);
   void refresh();
   [[nodiscard]] std::uint16_t gateway_alarms() const;
 
@@ -118,4 +119,4 @@ class Gateway final : public CommandPort {
   bool file_changed_ = false;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

@@ -8,15 +8,15 @@
 #include <string_view>
 #include <utility>
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 /// Where in its file a thing stands does not change it.
-BusConfig without_places(BusConfig bus) {
+config::BusConfig without_places(config::BusConfig bus) {
   bus.pointer.clear();
-  for (DriveConfig& drive : bus.drives) {
+  for (config::DriveConfig& drive : bus.drives) {
     drive.pointer.clear();
-    for (AxisConfig& axis : drive.axes) axis.pointer.clear();
+    for (config::AxisConfig& axis : drive.axes) axis.pointer.clear();
   }
   return bus;
 }
@@ -64,9 +64,9 @@ std::optional<std::size_t> place_of(const std::vector<Item>& items, const Same& 
   return static_cast<std::size_t>(found - items.begin());
 }
 
-void plan_buses(const Config& running, const Config& wanted, ReloadPlan& plan) {
-  for (const BusConfig& bus : wanted.buses) {
-    const auto before = place_of(running.buses, [&](const BusConfig& other) { return other.name == bus.name; });
+void plan_buses(const config::Config& running, const config::Config& wanted, ReloadPlan& plan) {
+  for (const config::BusConfig& bus : wanted.buses) {
+    const auto before = place_of(running.buses, [&](const config::BusConfig& other) { return other.name == bus.name; });
     const bool same = before && without_places(running.buses[*before]) == without_places(bus);
     plan.kept_buses.push_back(same ? before : std::nullopt);
     if (!same) plan.changes.push_back(fmt::format("bus {}: {}", bus.name, before ? "changed" : "added"));
@@ -75,12 +75,12 @@ void plan_buses(const Config& running, const Config& wanted, ReloadPlan& plan) {
     if (std::ranges::find(plan.kept_buses, std::optional(i)) != plan.kept_buses.end()) continue;
     plan.leaving_buses.push_back(i);
     const std::string& name = running.buses[i].name;
-    if (!place_of(wanted.buses, [&](const BusConfig& bus) { return bus.name == name; }))
+    if (!place_of(wanted.buses, [&](const config::BusConfig& bus) { return bus.name == name; }))
       plan.changes.push_back(fmt::format("bus {}: removed", name));
   }
 }
 
-void plan_listeners(const Config& running, const Config& wanted, ReloadPlan& plan) {
+void plan_listeners(const config::Config& running, const config::Config& wanted, ReloadPlan& plan) {
   for (const auto& listener : wanted.modbus_tcp) {
     const auto before = place_of(running.modbus_tcp, [&](const auto& other) { return same_address(other, listener); });
     const bool same = before && running.modbus_tcp[*before] == listener;
@@ -98,7 +98,7 @@ void plan_listeners(const Config& running, const Config& wanted, ReloadPlan& pla
 
 }  // namespace
 
-ReloadPlan plan_reload(const Config& running, const Config& wanted) {
+ReloadPlan plan_reload(const config::Config& running, const config::Config& wanted) {
   ReloadPlan plan;
   plan_buses(running, wanted, plan);
   plan_listeners(running, wanted, plan);
@@ -112,4 +112,4 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted) {
   return plan;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

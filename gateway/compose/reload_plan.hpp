@@ -11,7 +11,7 @@
 
 #include "gateway/config/config.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
 struct ReloadPlan {
   /// Of each bus of the wanted configuration: its place in the running one, where it goes on untouched.
@@ -28,6 +28,6 @@ struct ReloadPlan {
   std::vector<std::string> changes;
 };
 
-[[nodiscard]] ReloadPlan plan_reload(const Config& running, const Config& wanted);
+[[nodiscard]] ReloadPlan plan_reload(const config::Config& running, const config::Config& wanted);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

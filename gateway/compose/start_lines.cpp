@@ -6,30 +6,30 @@
 #include "gateway/check/check_lines.hpp"
 #include "gateway/config/adapter_names.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-std::size_t axes_of(const BusConfig& bus) {
+std::size_t axes_of(const config::BusConfig& bus) {
   std::size_t axes = 0;
-  for (const DriveConfig& drive : bus.drives) axes += drive.axes.size();
+  for (const config::DriveConfig& drive : bus.drives) axes += drive.axes.size();
   return axes;
 }
 
-std::string wire_text(const BusConfig& bus) {
-  if (adapter::on_can(bus.adapter)) return fmt::format("{}, {} kbit/s", bus.device, bus.bitrate / 1000);
+std::string wire_text(const config::BusConfig& bus) {
+  if (config::adapter::on_can(bus.adapter)) return fmt::format("{}, {} kbit/s", bus.device, bus.bitrate / 1000);
   const char parity = bus.parity == "even" ? 'E' : bus.parity == "odd" ? 'O' : 'N';
   return fmt::format("{}, {} baud 8{}1", bus.device, bus.baud, parity);
 }
 
-std::string bus_text(const BusConfig& bus) {
+std::string bus_text(const config::BusConfig& bus) {
   return fmt::format("{} on {}, {} with {}, timeout {:.0f} ms, polls {:.0f}/{:.0f}/{:.0f} ms{}", bus.adapter,
                      wire_text(bus), counted(bus.drives.size(), "drive", "drives"),
-                     counted(axes_of(bus), "axis", "axes"), in_ms(bus.timeout), in_ms(bus.poll[0]), in_ms(bus.poll[1]),
-                     in_ms(bus.poll[2]), bus.decode ? ", decoded" : "");
+                     counted(axes_of(bus), "axis", "axes"), check::in_ms(bus.timeout), check::in_ms(bus.poll[0]),
+                     check::in_ms(bus.poll[1]), check::in_ms(bus.poll[2]), bus.decode ? ", decoded" : "");
 }
 
 std::string_view renewed_by(LeaseRenewal renew) {
@@ -47,12 +47,12 @@ std::string_view renewed_by(LeaseRenewal renew) {
 std::string lease_text(const LeaseRules& lease) {
   if (!lease.on) return "no lease";
   const Command action = command_of(lease.on_expiry);
-  return fmt::format("lease {:.0f} ms, renewed by {}, then {}", in_ms(lease.timeout), renewed_by(lease.renew),
+  return fmt::format("lease {:.0f} ms, renewed by {}, then {}", check::in_ms(lease.timeout), renewed_by(lease.renew),
                      action == Command::none ? "nothing" : text(action));
 }
 
-std::string axis_text(const BusConfig& bus, const DriveConfig& drive, const AxisConfig& axis,
-                      const drive::DriveModel& model) {
+std::string axis_text(const config::BusConfig& bus, const config::DriveConfig& drive, const config::AxisConfig& axis,
+                      const model::DriveModel& model) {
   const std::string motor = axis.motor.empty() ? "" : " motor " + axis.motor;
   return fmt::format("{} ({}) node {}{} on bus {}, {:.6g} units a turn{}, {}", model.title, model.profile, drive.node,
                      motor, bus.name, axis.units_per_rev.to_double(), axis.inverted ? ", inverted" : "",
@@ -83,19 +83,19 @@ std::string dds_line(const dds::DdsSettings& settings) {
 
 }  // namespace
 
-std::vector<StartLine> start_lines(const LoadedConfig& loaded, std::string_view version) {
-  const Config& config = loaded.config;
+std::vector<StartLine> start_lines(const config::LoadedConfig& loaded, std::string_view version) {
+  const config::Config& config = loaded.config;
   std::size_t axes = 0;
-  for (const BusConfig& bus : config.buses) axes += axes_of(bus);
+  for (const config::BusConfig& bus : config.buses) axes += axes_of(bus);
   std::vector<StartLine> lines;
   lines.push_back(
       {"gateway", fmt::format("axisgate {}, configuration {}: {}, {}", version, config.file,
                               counted(config.buses.size(), "bus", "buses"), counted(axes, "axis", "axes"))});
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
-    const BusConfig& bus = config.buses[b];
+    const config::BusConfig& bus = config.buses[b];
     lines.push_back({"bus " + bus.name, bus_text(bus)});
     for (std::size_t d = 0; d < bus.drives.size(); ++d)
-      for (const AxisConfig& axis : bus.drives[d].axes)
+      for (const config::AxisConfig& axis : bus.drives[d].axes)
         lines.push_back({log_source(axis.number, axis.name), axis_text(bus, bus.drives[d], axis, loaded.models[b][d])});
   }
   for (const modbus_tcp::ListenerSettings& listener : config.modbus_tcp)
@@ -104,4 +104,4 @@ std::vector<StartLine> start_lines(const LoadedConfig& loaded, std::string_view 
   return lines;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

@@ -10,13 +10,13 @@
 
 #include "gateway/config/config_loader.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 
 struct StartLine {
   std::string source;  ///< as Log::write() takes it
   std::string text;
 };
 
-[[nodiscard]] std::vector<StartLine> start_lines(const LoadedConfig& loaded, std::string_view version);
+[[nodiscard]] std::vector<StartLine> start_lines(const config::LoadedConfig& loaded, std::string_view version);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

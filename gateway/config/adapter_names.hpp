@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace axisgate::app::adapter {
+namespace axisgate::config::adapter {
 
 inline constexpr std::string_view kCanopen = "canopen";
 inline constexpr std::string_view kModbusRtu = "modbus-rtu";
@@ -20,4 +20,4 @@ inline constexpr std::string_view kKeyaRs485 = "keya-rs485";
 [[nodiscard]] constexpr bool keya_serial(std::string_view name) { return name == kKeyaRs232 || name == kKeyaRs485; }
 [[nodiscard]] constexpr bool keya(std::string_view name) { return name == kKeyaCan || keya_serial(name); }
 
-}  // namespace axisgate::app::adapter
+}  // namespace axisgate::config::adapter

@@ -11,7 +11,7 @@
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/drive/device/read_blocks.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -49,8 +49,8 @@ Duration stretched(Duration period, int permille) {
 
 }  // namespace
 
-Duration answer_of(const drive::DriveModel& model) {
-  return drive::is_canopen(model) ? kAssumedSdoAnswer : std::max(kAssumedAnswer, model.rtu.answer);
+Duration answer_of(const model::DriveModel& model) {
+  return model::is_canopen(model) ? kAssumedSdoAnswer : std::max(kAssumedAnswer, model.rtu.answer);
 }
 
 BusTiming timing_of(const BusConfig& bus) {
@@ -86,15 +86,15 @@ Duration wire_time_of(const BusTiming& timing, const bus::Exchange& exchange) {
 namespace {
 
 /// Each request of one drive into its class; the longest of them on the wire.
-Duration add_polls(BusBudget& budget, const BusTiming& timing, const drive::DriveModel& model) {
+Duration add_polls(BusBudget& budget, const BusTiming& timing, const model::DriveModel& model) {
   Duration longest{};
-  std::set<std::tuple<drive::PollClass, std::uint16_t, std::uint8_t>> queries;
+  std::set<std::tuple<model::PollClass, std::uint16_t, std::uint8_t>> queries;
   for (const drive::PlannedRead& read : drive::planned_reads(model)) {
     const Duration on_wire = wire_time_of(timing, read.exchange);
     longest = std::max(longest, on_wire);
-    if (read.poll_class == drive::PollClass::once) continue;  // at bring-up and after writes, but a stop may meet it
+    if (read.poll_class == model::PollClass::once) continue;  // at bring-up and after writes, but a stop may meet it
     // One query of Keya's answers for both motors, with several objects.
-    const bus::ObjectAddress& asked = read.exchange.object;
+    const ObjectAddress& asked = read.exchange.object;
     if (adapter::keya(model.protocol) && !queries.emplace(read.poll_class, asked.index, asked.sub).second) continue;
     BusBudget::Polled& polled = budget.classes[static_cast<std::size_t>(read.poll_class)];
     ++polled.reads;
@@ -105,13 +105,13 @@ Duration add_polls(BusBudget& budget, const BusTiming& timing, const drive::Driv
 }
 
 /// What the gateway sends so that a drive stays enabled, one write for each axis.
-void add_keep_alives(BusBudget& budget, const BusTiming& timing, const drive::DriveModel& model) {
+void add_keep_alives(BusBudget& budget, const BusTiming& timing, const model::DriveModel& model) {
   if (model.keep_alive == Duration{}) return;
   BusBudget::Polled& kept = budget.kept_alive;
   kept.period = kept.period == Duration{} ? model.keep_alive : std::min(kept.period, model.keep_alive);
   const bool answered = timing.control == Duration{};
   const Duration on_wire = (answered ? timing.on_wire : timing.control) + timing.min_gap;
-  for (const drive::AxisModel& axis : model.axes) {
+  for (const model::AxisModel& axis : model.axes) {
     if (axis.keep_alive.empty()) continue;
     ++kept.reads;
     kept.on_wire += on_wire;
@@ -120,17 +120,17 @@ void add_keep_alives(BusBudget& budget, const BusTiming& timing, const drive::Dr
 }
 
 /// Keya: a drive's heartbeats.
-double heartbeat_share(const BusTiming& timing, const drive::DriveModel& model) {
+double heartbeat_share(const BusTiming& timing, const model::DriveModel& model) {
   const Duration every = model.unsolicited.every;
   return share_of(timing.unsolicited, every == Duration{} ? kAssumedHeartbeat : every);
 }
 
 /// On CANopen what is mapped is asked for now and then alone. Gives the share of the line it would take unmapped.
-double add_sdo_polls(BusBudget& budget, const BusTiming& timing, const drive::DriveModel& model) {
+double add_sdo_polls(BusBudget& budget, const BusTiming& timing, const model::DriveModel& model) {
   double unmapped = 0;
   const Duration on_wire = timing.on_wire + timing.min_gap;
   for (const drive::PollItem& item : drive::poll_items(model)) {
-    if (item.poll_class == drive::PollClass::once) continue;
+    if (item.poll_class == model::PollClass::once) continue;
     BusBudget::Polled& polled_otherwise = budget.classes[static_cast<std::size_t>(item.poll_class)];
     unmapped += share_of(on_wire + answer_of(model), polled_otherwise.period);
     BusBudget::Polled& polled = item.mapped ? budget.confirmed : polled_otherwise;
@@ -142,39 +142,39 @@ double add_sdo_polls(BusBudget& budget, const BusTiming& timing, const drive::Dr
 }
 
 /// How often a TPDO may come at most: at each change, but for its inhibit time; at its event timer; or by SYNC.
-Duration shortest_period(const drive::TpdoProperties& tpdo, Duration sync) {
+Duration shortest_period(const model::TpdoProperties& tpdo, Duration sync) {
   if (tpdo.type <= kLastSynchronousType) return sync * std::max<int>(tpdo.type, 1);
   const Duration on_change = tpdo.inhibit_time > Duration{} ? tpdo.inhibit_time : kUninhibited;
   return tpdo.event_ms ? std::min<Duration>(on_change, milliseconds(*tpdo.event_ms)) : on_change;
 }
 
-double unsolicited_share(const BusTiming& timing, const drive::DriveModel& model) {
-  const drive::CanopenProperties& facts = model.canopen;
+double unsolicited_share(const BusTiming& timing, const model::DriveModel& model) {
+  const model::CanopenProperties& facts = model.canopen;
   const auto frame = [&](int bytes) { return can_frame_time(timing.can_bitrate, bytes); };
   double share = share_of(frame(1), facts.heartbeat) + share_of(frame(0) + frame(1), facts.guard_time);
-  for (const drive::TpdoProperties& tpdo : facts.tpdos) {
+  for (const model::TpdoProperties& tpdo : facts.tpdos) {
     int bytes = 0;
-    for (const drive::ObjectId id : tpdo.map) bytes += model.object(id).size;
+    for (const model::ObjectId id : tpdo.map) bytes += model.object(id).size;
     share += share_of(frame(bytes), shortest_period(tpdo, facts.sync));
   }
   return share;
 }
 
 /// The gateway's own frames beside the exchanges, once for all drives: at the shortest period that any asks for.
-double own_share(const BusTiming& timing, const std::vector<drive::DriveModel>& drives) {
+double own_share(const BusTiming& timing, const std::vector<model::DriveModel>& drives) {
   double heartbeat = 0;
   double sync = 0;
-  for (const drive::DriveModel& model : drives) {
+  for (const model::DriveModel& model : drives) {
     heartbeat = std::max(heartbeat, share_of(can_frame_time(timing.can_bitrate, 1), model.canopen.own_heartbeat));
     sync = std::max(sync, share_of(can_frame_time(timing.can_bitrate, 0), model.canopen.sync));
   }
   return heartbeat + sync;
 }
 
-void plan_can(BusBudget& budget, const BusTiming& timing, const std::vector<drive::DriveModel>& drives) {
+void plan_can(BusBudget& budget, const BusTiming& timing, const std::vector<model::DriveModel>& drives) {
   double unmapped = 0;
   double unsolicited = own_share(timing, drives);
-  for (const drive::DriveModel& model : drives) {
+  for (const model::DriveModel& model : drives) {
     const Duration confirm = model.canopen.confirm;
     Duration& period = budget.confirmed.period;
     period = period == Duration{} ? confirm : std::min(period, confirm);
@@ -187,14 +187,14 @@ void plan_can(BusBudget& budget, const BusTiming& timing, const std::vector<driv
 
 }  // namespace
 
-BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>& drives) {
+BusBudget plan_bus(const BusTiming& timing, const std::vector<model::DriveModel>& drives) {
   BusBudget budget;
   for (std::size_t i = 0; i < budget.classes.size(); ++i) budget.classes[i].period = timing.poll[i];
   const bool can = timing.can_bitrate != 0;
   Duration longest = timing.on_wire;
   Duration answer = can ? kAssumedSdoAnswer : kAssumedAnswer;
   double heartbeats = 0;
-  for (const drive::DriveModel& model : drives) {
+  for (const model::DriveModel& model : drives) {
     answer = std::max(answer, answer_of(model));
     if (!can) longest = std::max(longest, add_polls(budget, timing, model));
     add_keep_alives(budget, timing, model);
@@ -238,4 +238,4 @@ std::array<Duration, 3> comfortable_periods(const BusBudget& budget) {
   return periods;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -7,18 +7,19 @@
 #include <array>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/config/config.hpp"
 #include "gateway/core/clock.hpp"
 #include "gateway/model/model.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 /// What a drive is taken to need for its answer, beside the time on the wire, where its profile states no longer time.
 /// The drives' own limit is the bus's timeout.
 inline constexpr Duration kAssumedAnswer = std::chrono::milliseconds(5);
 /// The same for an SDO server.
 inline constexpr Duration kAssumedSdoAnswer = std::chrono::milliseconds(1);
-[[nodiscard]] Duration answer_of(const drive::DriveModel& model);
+[[nodiscard]] Duration answer_of(const model::DriveModel& model);
 /// Above this share of the line the polls leave commands little room; suggested periods stay below it.
 inline constexpr int kComfortablePermille = 800;
 /// What nodes send by themselves goes before every request on CAN: it may take this share of the line.
@@ -88,9 +89,9 @@ struct BusBudget {
   [[nodiscard]] bool overloaded() const { return load_answered > 1000 || load_on_wire + load_unsolicited > 1000; }
 };
 
-[[nodiscard]] BusBudget plan_bus(const BusTiming& timing, const std::vector<drive::DriveModel>& drives);
+[[nodiscard]] BusBudget plan_bus(const BusTiming& timing, const std::vector<model::DriveModel>& drives);
 
 /// Periods that bring this bus down to kComfortablePermille, in whole 10 ms; those in force where it is there already.
 [[nodiscard]] std::array<Duration, 3> comfortable_periods(const BusBudget& budget);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -19,7 +19,7 @@
 #include "gateway/upstream/dds/dds_settings.hpp"
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 struct AxisLimits {
   std::optional<Range> position;                            ///< register units
@@ -86,18 +86,19 @@ struct BusConfig {
 
 struct Config {
   std::string file;
-  std::vector<drive::FileRead> read{};  ///< the file and its profiles, and where one was looked for in vain; each once
+  std::vector<profile::FileRead>
+      read{};  ///< the file and its profiles, and where one was looked for in vain; each once
   std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
   std::optional<dds::DdsSettings> dds;
-  std::vector<drive::FileRead> read_by_dds{};  ///< what axisgate-dds reads when it starts, but the private key
+  std::vector<profile::FileRead> read_by_dds{};  ///< what axisgate-dds reads when it starts, but the private key
   std::vector<BusConfig> buses;
 };
 
 /// What the alarm "configuration changed" is about.
-[[nodiscard]] inline std::vector<drive::FileRead> watched_files(const Config& config) {
-  std::vector<drive::FileRead> all = config.read;
+[[nodiscard]] inline std::vector<profile::FileRead> watched_files(const Config& config) {
+  std::vector<profile::FileRead> all = config.read;
   all.insert(all.end(), config.read_by_dds.begin(), config.read_by_dds.end());
   return all;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 void warn_at_first_use(const ConfigNode& root, std::string_view key, ConfigFaults& faults) {
@@ -27,4 +27,4 @@ void warn_without_effect(const ConfigNode& root, ConfigFaults& faults) {
   for (const std::string_view key : {"dds_unit", "metres_per_rev"}) warn_at_first_use(root, key, faults);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -3,7 +3,7 @@
 
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 Rational read_units(const ConfigNode& node, ConfigFaults& faults) {
@@ -78,4 +78,4 @@ AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults) {
   return axis;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

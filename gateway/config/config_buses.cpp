@@ -9,7 +9,7 @@
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -164,4 +164,4 @@ std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults) 
   return buses;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -10,7 +10,7 @@
 #include "gateway/config/bus_budget.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -40,15 +40,15 @@ void check_bitrate(const ConfigNode& node, const BusConfig& bus, bool lawicel, C
 }
 
 /// TPDOs win the line against every SDO request, stops among them: they must not fill it, however much moves at once.
-void stretch_tpdos(const BusConfig& bus, std::vector<drive::DriveModel>& drives) {
+void stretch_tpdos(const BusConfig& bus, std::vector<model::DriveModel>& drives) {
   const int load = plan_bus(timing_of(bus), drives).load_unsolicited;
   if (load <= kUnsolicitedPermille) return;
   const auto factor = static_cast<std::uint32_t>((load + kUnsolicitedPermille - 1) / kUnsolicitedPermille);
   const auto longer = [&](std::uint16_t time) {
     return static_cast<std::uint16_t>(std::min(time * factor, kLongestInhibit));
   };
-  for (drive::DriveModel& model : drives) {
-    for (drive::TpdoProperties& tpdo : model.canopen.tpdos) {
+  for (model::DriveModel& model : drives) {
+    for (model::TpdoProperties& tpdo : model.canopen.tpdos) {
       if (tpdo.inhibit && *tpdo.inhibit != 0) {
         const std::uint16_t inhibit = longer(*tpdo.inhibit);
         tpdo.inhibit_time = tpdo.inhibit_time / *tpdo.inhibit * inhibit;
@@ -60,10 +60,10 @@ void stretch_tpdos(const BusConfig& bus, std::vector<drive::DriveModel>& drives)
 }
 
 /// What comes by TPDO is read now and then all the same: with many drives on a slow line, not so often.
-void stretch_confirming(const BusConfig& bus, std::vector<drive::DriveModel>& drives) {
+void stretch_confirming(const BusConfig& bus, std::vector<model::DriveModel>& drives) {
   const int load = plan_bus(timing_of(bus), drives).load_confirmed();
   if (load <= kConfirmPermille) return;
-  for (drive::DriveModel& model : drives) model.canopen.confirm *= (load + kConfirmPermille - 1) / kConfirmPermille;
+  for (model::DriveModel& model : drives) model.canopen.confirm *= (load + kConfirmPermille - 1) / kConfirmPermille;
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& f
   check_bitrate(node, bus, device.lawicel, faults);
 }
 
-void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults) {
+void settle_can_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults) {
   for (std::size_t i = 0; i < config.buses.size(); ++i) {
     BusConfig& bus = config.buses[i];
     if (bus.adapter != adapter::kCanopen) continue;
@@ -90,4 +90,4 @@ void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>
   }
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -10,7 +10,7 @@
 #include "gateway/config/config_sections.hpp"
 #include "gateway/upstream/dds_link/ros_names.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using dds::DdsSettings;
@@ -212,11 +212,11 @@ std::optional<DdsSettings> read_dds(const ConfigNode& root, const std::vector<Bu
 }
 
 // A renewed key comes with a certificate, and has no business in this process.
-std::vector<drive::FileRead> read_files_of_dds(const DdsSettings& settings) {
-  std::vector<drive::FileRead> out;
+std::vector<profile::FileRead> read_files_of_dds(const DdsSettings& settings) {
+  std::vector<profile::FileRead> out;
   if (settings.qos_file.empty()) return out;
-  out.push_back(drive::read_file(settings.qos_file));
-  for (const dds::CertificateRole& each : settings.roles) out.push_back(drive::read_file(each.certificate));
+  out.push_back(profile::read_file(settings.qos_file));
+  for (const dds::CertificateRole& each : settings.roles) out.push_back(profile::read_file(each.certificate));
   const std::string qos = out.front().text.value_or("");
   constexpr std::string_view kFile = "file://";
   for (std::size_t at = 0; (at = qos.find(kFile, at)) != std::string::npos;) {
@@ -224,7 +224,7 @@ std::vector<drive::FileRead> read_files_of_dds(const DdsSettings& settings) {
     at += kFile.size();
     const std::string path = qos.substr(at, qos.find_first_of("< \t\r\n", at) - at);
     const bool known = std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.file == path; });
-    if (!known && name.find("private_key") == std::string_view::npos) out.push_back(drive::read_file(path));
+    if (!known && name.find("private_key") == std::string_view::npos) out.push_back(profile::read_file(path));
   }
   return out;
 }
@@ -249,4 +249,4 @@ std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults
   return std::nullopt;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -5,7 +5,7 @@
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 void read_constants(const ConfigNode& node, DriveConfig& drive, ConfigFaults& faults) {
@@ -20,8 +20,8 @@ void read_constants(const ConfigNode& node, DriveConfig& drive, ConfigFaults& fa
 
 /// What is wrong with a node-ID of CANopen; empty: nothing.
 std::string canopen_mistake(int node) {
-  if (node < drive::kOwnNode) return "";
-  if (node == drive::kOwnNode)
+  if (node < model::kOwnNode) return "";
+  if (node == model::kOwnNode)
     return "127 is the gateway's own node-ID, in its heartbeat: give the drive one of 1 to 126";
   return fmt::format("{} is no CANopen node-ID: they go from 1 to 127, and 127 is the gateway's own", node);
 }
@@ -84,4 +84,4 @@ DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFault
   return drive;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

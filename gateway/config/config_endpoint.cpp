@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 constexpr std::uint8_t kMappedPrefix = 96;  // ::ffff:0:0/96 holds IPv4
@@ -96,4 +96,4 @@ std::optional<Network> parse_network(std::string_view text) {
   return network;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

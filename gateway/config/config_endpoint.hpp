@@ -11,7 +11,7 @@
 
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 struct Endpoint {
   std::string host;  ///< as the system prints it, without brackets
@@ -35,4 +35,4 @@ struct Network {
 /// "192.168.1.7", "192.168.1.0/24", "fd00::/8". No value: not of that form.
 [[nodiscard]] std::optional<Network> parse_network(std::string_view text);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 std::string text(const ConfigFault& fault) {
   if (fault.pointer.empty()) return fmt::format("{}: {}", fault.file, fault.message);
@@ -32,4 +32,4 @@ bool ConfigFaults::within(std::string_view pointer) const {
   });
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

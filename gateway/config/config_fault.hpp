@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 struct ConfigFault {
   std::string file;
@@ -39,4 +39,4 @@ class ConfigFaults {
   std::vector<std::string> warnings_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

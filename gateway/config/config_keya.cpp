@@ -10,7 +10,7 @@
 #include "gateway/config/bus_budget.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 /// KYDAS4860-2E manual V2.2: RS232 has one rate, parameter 0021 gives those of RS485 and CAN.
@@ -68,7 +68,7 @@ void check_keya_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& 
         "own");
 }
 
-void settle_keya_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults) {
+void settle_keya_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults) {
   for (std::size_t i = 0; i < config.buses.size(); ++i) {
     BusConfig& bus = config.buses[i];
     if (!adapter::keya(bus.adapter)) continue;
@@ -81,4 +81,4 @@ void settle_keya_buses(Config& config, std::vector<std::vector<drive::DriveModel
   }
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -6,7 +6,7 @@
 #include "gateway/config/config_endpoint.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using modbus_tcp::AllowEntry;
@@ -157,4 +157,4 @@ std::vector<ListenerSettings> read_listeners(const ConfigNode& root, ConfigFault
   return listeners;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

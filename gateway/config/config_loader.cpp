@@ -9,12 +9,13 @@
 #include "gateway/config/config_sections.hpp"
 #include "gateway/profile/json/json_schema.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 void check_schema(const nlohmann::json& document, ConfigFaults& faults) {
   const auto schema = nlohmann::json::parse(gateway_schema_text());
-  for (const drive::SchemaFault& fault : drive::validate(document, schema)) faults.add(fault.pointer, fault.message);
+  for (const profile::SchemaFault& fault : profile::validate(document, schema))
+    faults.add(fault.pointer, fault.message);
 }
 
 /// Per-axis unit ids have room for 254 axes.
@@ -40,11 +41,11 @@ void warn_about_unit_ids(const Config& config, ConfigFaults& faults) {
 
 }  // namespace
 
-LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders, drive::Pipes pipes) {
+LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders, profile::Pipes pipes) {
   ConfigFaults faults(file);
   LoadedConfig loaded;
-  auto read = drive::load_json(file, loaded.config.read, pipes);
-  if (const auto* fault = std::get_if<drive::SchemaFault>(&read)) {
+  auto read = profile::load_json(file, loaded.config.read, pipes);
+  if (const auto* fault = std::get_if<profile::SchemaFault>(&read)) {
     faults.add(fault->pointer, fault->message);
     return faults.faults();
   }
@@ -74,4 +75,4 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
   return loaded;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -12,20 +12,20 @@
 #include "gateway/config/config_fault.hpp"
 #include "gateway/model/model.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 struct LoadedConfig {
   Config config;
   /// Nothing wrong, but worth knowing: one line each, with file and place.
   std::vector<std::string> warnings;
   /// models[bus][drive], in the order of `config`.
-  std::vector<std::vector<drive::DriveModel>> models;
+  std::vector<std::vector<model::DriveModel>> models;
 };
 
 using LoadResult = std::variant<LoadedConfig, std::vector<ConfigFault>>;
 
 /// `profile_folders` are searched in their order for profiles that are given by name.
 [[nodiscard]] LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders,
-                                     drive::Pipes pipes = drive::Pipes::refused);
+                                     profile::Pipes pipes = profile::Pipes::refused);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -10,7 +10,7 @@
 #include "gateway/core/nearest.hpp"
 #include "gateway/profile/resolve/profile_resolve.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 namespace fs = std::filesystem;
@@ -18,15 +18,15 @@ namespace fs = std::filesystem;
 /// Largest position a register can show, design 3.1; the other end is its negative.
 constexpr std::int64_t kLargestPosition = 2147483647;
 
-drive::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
-  drive::ResolveInput input;
+profile::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) {
+  profile::ResolveInput input;
   input.protocol = bus.adapter;
   input.node = config.node;
   input.constants = config.constants;
   input.identity = config.identity;
   input.poll = bus.poll;
   for (const AxisConfig& axis : config.axes) {
-    drive::ResolveAxis resolved;
+    profile::ResolveAxis resolved;
     resolved.number = axis.number;
     resolved.name = axis.name;
     resolved.units_per_rev = axis.units_per_rev;
@@ -70,30 +70,31 @@ class Profiles {
       : base_(fs::path(config_file).parent_path()), folders_(folders), faults_(faults) {}
 
   /// Null where it is missing or wrong; the mistakes are told.
-  const drive::LoadedProfile* find(const DriveConfig& config) {
+  const profile::LoadedProfile* find(const DriveConfig& config) {
     const std::string pointer = config.pointer + "/profile";
     const std::string name = is_path(config.profile) ? (base_ / config.profile).string() : config.profile;
-    const auto file = drive::find_profile(name, folders_, &read_);
+    const auto file = profile::find_profile(name, folders_, &read_);
     if (!file) {
       faults_.add(pointer, missing(config.profile, name));
       return nullptr;
     }
     auto known = loaded_.find(*file);
     if (known == loaded_.end()) {
-      known = loaded_.emplace(*file, drive::load_profile(*file, folders_)).first;
+      known = loaded_.emplace(*file, profile::load_profile(*file, folders_)).first;
       read_.insert(read_.end(), known->second.read.begin(), known->second.read.end());
     }
-    const drive::LoadedProfile& profile = known->second;
+    const profile::LoadedProfile& profile = known->second;
     if (profile.faults.empty()) return &profile;
-    for (const drive::Fault& fault : profile.faults) faults_.add(ConfigFault{fault.file, fault.pointer, fault.message});
+    for (const profile::Fault& fault : profile.faults)
+      faults_.add(ConfigFault{fault.file, fault.pointer, fault.message});
     faults_.add(pointer, fmt::format("profile {} is wrong, see its own mistakes: correct it", *file));
     return nullptr;
   }
 
   /// All that was read, with what they extend, and where profiles were looked for in vain; each once.
-  [[nodiscard]] std::vector<drive::FileRead> read() const {
-    std::vector<drive::FileRead> out;
-    for (const drive::FileRead& each : read_)
+  [[nodiscard]] std::vector<profile::FileRead> read() const {
+    std::vector<profile::FileRead> out;
+    for (const profile::FileRead& each : read_)
       if (std::ranges::find(out, each) == out.end()) out.push_back(each);
     return out;
   }
@@ -110,15 +111,15 @@ class Profiles {
   fs::path base_;
   const std::vector<std::string>& folders_;
   ConfigFaults& faults_;
-  std::map<std::string, drive::LoadedProfile> loaded_;
-  std::vector<drive::FileRead> read_;
+  std::map<std::string, profile::LoadedProfile> loaded_;
+  std::vector<profile::FileRead> read_;
 };
 
 /// Without limits, an axis that can travel further than a register can count would one day show no position at all.
-void check_travel(const drive::AxisModel& model, const drive::DriveModel& drive, const AxisConfig& axis,
+void check_travel(const model::AxisModel& model, const model::DriveModel& drive, const AxisConfig& axis,
                   ConfigFaults& faults) {
-  const drive::Binding* position = model.binding(Quantity::position_actual);
-  if (position == nullptr || position->object == drive::kNoObject || axis.limits.position) return;
+  const model::Binding* position = model.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == model::kNoObject || axis.limits.position) return;
   if (position->recipe.waits()) return;  // how it counts is read from the drive: its values are judged one by one
   const auto travel = position->to_register(drive.object(position->object).range().max);
   if (travel && *travel <= kLargestPosition && *travel >= -kLargestPosition) return;
@@ -130,7 +131,7 @@ void check_travel(const drive::AxisModel& model, const drive::DriveModel& drive,
           static_cast<double>(kLargestPosition) / axis.units_per_rev.to_double()));
 }
 
-void check_lease(const drive::AxisModel& model, const AxisConfig& axis, ConfigFaults& faults) {
+void check_lease(const model::AxisModel& model, const AxisConfig& axis, ConfigFaults& faults) {
   const Command action = command_of(axis.lease.on_expiry);
   if (!axis.lease.on || action == Command::none || model.command(action)) return;
   faults.add(axis.pointer + "/lease/on_expiry",
@@ -138,9 +139,9 @@ void check_lease(const drive::AxisModel& model, const AxisConfig& axis, ConfigFa
                          axisgate::text(action)));
 }
 
-std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& config, Profiles& profiles,
+std::optional<model::DriveModel> load_model(const BusConfig& bus, DriveConfig& config, Profiles& profiles,
                                             ConfigFaults& faults) {
-  const drive::LoadedProfile* profile = profiles.find(config);
+  const profile::LoadedProfile* profile = profiles.find(config);
   if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
   config.profile_text = profile->text;
   const std::size_t motors = profile->profile.axes.size();
@@ -150,12 +151,12 @@ std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& c
                            profile->profile.title, motors, motors == 1 ? "" : "s", config.axes.size()));
     return std::nullopt;
   }
-  auto resolved = drive::resolve(*profile, input_of(bus, config));
-  if (const auto* wrong = std::get_if<std::vector<drive::Fault>>(&resolved)) {
-    for (const drive::Fault& fault : *wrong) faults.add(config.pointer + fault.pointer, fault.message);
+  auto resolved = profile::resolve(*profile, input_of(bus, config));
+  if (const auto* wrong = std::get_if<std::vector<profile::Fault>>(&resolved)) {
+    for (const profile::Fault& fault : *wrong) faults.add(config.pointer + fault.pointer, fault.message);
     return std::nullopt;
   }
-  auto& model = std::get<drive::DriveModel>(resolved);
+  auto& model = std::get<model::DriveModel>(resolved);
   for (std::size_t i = 0; i < model.axes.size(); ++i) {
     check_travel(model.axes[i], model, config.axes[i], faults);
     check_lease(model.axes[i], config.axes[i], faults);
@@ -166,9 +167,9 @@ std::optional<drive::DriveModel> load_model(const BusConfig& bus, DriveConfig& c
 
 }  // namespace
 
-std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const std::vector<std::string>& profile_folders,
+std::vector<std::vector<model::DriveModel>> load_models(Config& config, const std::vector<std::string>& profile_folders,
                                                         ConfigFaults& faults) {
-  std::vector<std::vector<drive::DriveModel>> models;
+  std::vector<std::vector<model::DriveModel>> models;
   Profiles profiles(config.file, profile_folders, faults);
   for (BusConfig& bus : config.buses) {
     auto& drives = models.emplace_back();
@@ -178,8 +179,8 @@ std::vector<std::vector<drive::DriveModel>> load_models(Config& config, const st
       if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
     }
   }
-  for (drive::FileRead& each : profiles.read()) config.read.push_back(std::move(each));
+  for (profile::FileRead& each : profiles.read()) config.read.push_back(std::move(each));
   return models;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -5,8 +5,8 @@
 
 #include "gateway/profile/json/json_schema.hpp"
 
-namespace axisgate::app {
-std::string ConfigNode::pointer(std::string_view key) const { return drive::pointer_to(pointer_, key); }
+namespace axisgate::config {
+std::string ConfigNode::pointer(std::string_view key) const { return profile::pointer_to(pointer_, key); }
 
 bool ConfigNode::has(std::string_view key) const { return json_->is_object() && json_->contains(key); }
 
@@ -68,6 +68,6 @@ Duration ConfigNode::milliseconds(std::string_view key, Duration otherwise) cons
   return value && *value >= 0 && *value <= kLongest ? std::chrono::milliseconds(*value) : otherwise;
 }
 
-std::optional<Rational> ConfigNode::rational() const { return drive::rational_of(*json_); }
+std::optional<Rational> ConfigNode::rational() const { return profile::rational_of(*json_); }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -14,7 +14,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/core/rational.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 class ConfigNode {
  public:
@@ -48,4 +48,4 @@ class ConfigNode {
   std::string pointer_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -9,26 +9,26 @@
 #include "gateway/config/config_sections.hpp"
 #include "gateway/drive/device/read_blocks.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
 
 /// The longest request and reply that the gateway's own reads and writes come to.
-Duration longest_on_wire(const BusConfig& bus, const std::vector<drive::DriveModel>& drives) {
+Duration longest_on_wire(const BusConfig& bus, const std::vector<model::DriveModel>& drives) {
   const BusTiming timing = timing_of(bus);
   Duration longest = timing.on_wire;
-  for (const drive::DriveModel& model : drives)
+  for (const model::DriveModel& model : drives)
     for (const drive::PlannedRead& read : drive::planned_reads(model))
       longest = std::max(longest, wire_time_of(timing, read.exchange));
   return longest;
 }
 
-void check_nodes(const BusConfig& bus, const std::vector<drive::DriveModel>& drives, ConfigFaults& faults) {
+void check_nodes(const BusConfig& bus, const std::vector<model::DriveModel>& drives, ConfigFaults& faults) {
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const std::uint8_t node = drives[i].node;
     const bool broadcast = std::any_of(drives.begin(), drives.end(),
-                                       [&](const drive::DriveModel& model) { return model.rtu.broadcast == node; });
+                                       [&](const model::DriveModel& model) { return model.rtu.broadcast == node; });
     if (node == 0 || broadcast)
       faults.add(bus.drives[i].pointer + "/node",
                  fmt::format("{} is an address that every drive obeys and none answers: give the drive a number of its "
@@ -39,7 +39,7 @@ void check_nodes(const BusConfig& bus, const std::vector<drive::DriveModel>& dri
 
 }  // namespace
 
-void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults) {
+void settle_rtu_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults) {
   for (std::size_t i = 0; i < config.buses.size(); ++i) {
     BusConfig& bus = config.buses[i];
     if (bus.adapter != adapter::kModbusRtu) continue;
@@ -50,4 +50,4 @@ void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>
   }
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

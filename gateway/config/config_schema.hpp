@@ -6,8 +6,8 @@
 
 #include <string_view>
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 [[nodiscard]] std::string_view gateway_schema_text();
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

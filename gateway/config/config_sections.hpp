@@ -13,7 +13,7 @@
 #include "gateway/config/config_node.hpp"
 #include "gateway/model/model.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 /// What the schema knows and this version has not: refused by name, never ignored.
 void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
@@ -28,7 +28,7 @@ void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
 [[nodiscard]] std::optional<dds::DdsSettings> read_dds(const ConfigNode& root, const std::vector<BusConfig>& buses,
                                                        ConfigFaults& faults);
 /// What axisgate-dds reads when it starts, but the private key.
-[[nodiscard]] std::vector<drive::FileRead> read_files_of_dds(const dds::DdsSettings& settings);
+[[nodiscard]] std::vector<profile::FileRead> read_files_of_dds(const dds::DdsSettings& settings);
 /// An axis's keys "dds_unit" and "metres_per_rev"; no value: rad.
 [[nodiscard]] std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults);
 
@@ -39,24 +39,24 @@ void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
 
 /// The profiles of all drives, resolved for their axes; what was read for it is added to the configuration. Drives with
 /// mistakes of their own are left out.
-[[nodiscard]] std::vector<std::vector<drive::DriveModel>> load_models(Config& config,
+[[nodiscard]] std::vector<std::vector<model::DriveModel>> load_models(Config& config,
                                                                       const std::vector<std::string>& profile_folders,
                                                                       ConfigFaults& faults);
 
 /// A timeout that nobody has given is what the longest exchange and the slowest drive need; one that is given must be
 /// longer than the exchange. `takes`: what `on_wire` is the time of, for the message.
-void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, Duration on_wire,
+void settle_timeout(BusConfig& bus, const std::vector<model::DriveModel>& drives, Duration on_wire,
                     const std::string& takes, ConfigFaults& faults);
 /// Poll periods that nobody has given are what the line carries.
-void settle_poll(BusConfig& bus, std::vector<drive::DriveModel>& drives);
+void settle_poll(BusConfig& bus, std::vector<model::DriveModel>& drives);
 /// modbus-rtu: timeouts and poll periods that nobody has given follow from the drives on the line.
-void settle_rtu_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+void settle_rtu_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults);
 
 /// What a bus on CAN may not have, and what its device must be.
 void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
 /// canopen: the same for timeouts and periods; and inhibit and confirmation times that leave the line to requests,
 /// however many drives share it.
-void settle_can_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+void settle_can_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults);
 
 /// Keya's protocols: rates as the drives leave their factory.
 void default_keya_bus(BusConfig& bus);
@@ -65,6 +65,6 @@ void default_keya_bus(BusConfig& bus);
 /// Rates, parity and number of drives of a bus that speaks one of Keya's protocols.
 void check_keya_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
 /// Keya's protocols: the same for timeouts and periods.
-void settle_keya_buses(Config& config, std::vector<std::vector<drive::DriveModel>>& models, ConfigFaults& faults);
+void settle_keya_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

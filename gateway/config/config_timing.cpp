@@ -6,15 +6,15 @@
 #include "gateway/config/bus_budget.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
-void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives, Duration on_wire,
+void settle_timeout(BusConfig& bus, const std::vector<model::DriveModel>& drives, Duration on_wire,
                     const std::string& takes, ConfigFaults& faults) {
   using std::chrono::milliseconds;
   constexpr int kRoom = 20;  // ms above the wire's time, for the drive
   if (bus.timeout == Duration{}) {
     Duration answer{};
-    for (const drive::DriveModel& model : drives) answer = std::max(answer, model.timeout);
+    for (const model::DriveModel& model : drives) answer = std::max(answer, model.timeout);
     bus.timeout = (on_wire + answer + milliseconds(1) - Duration(1)) / milliseconds(1) * milliseconds(1);
   } else if (bus.timeout <= on_wire) {
     faults.add(bus.pointer + "/timeout_ms",
@@ -24,9 +24,9 @@ void settle_timeout(BusConfig& bus, const std::vector<drive::DriveModel>& drives
   }
 }
 
-void settle_poll(BusConfig& bus, std::vector<drive::DriveModel>& drives) {
+void settle_poll(BusConfig& bus, std::vector<model::DriveModel>& drives) {
   if (!bus.poll_given) bus.poll = comfortable_periods(plan_bus(timing_of(bus), drives));
-  for (drive::DriveModel& model : drives) model.poll_period = bus.poll;
+  for (model::DriveModel& model : drives) model.poll_period = bus.poll;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

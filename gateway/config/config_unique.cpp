@@ -8,7 +8,7 @@
 #include "adapters/can/can_device.hpp"
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 /// Remembers who used a name first.
@@ -95,4 +95,4 @@ void check_unique(const Config& config, ConfigFaults& faults) {
   }
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -11,6 +11,7 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/core/numbers.hpp"
 #include "gateway/core/rational.hpp"
 #include "gateway/image/capabilities.hpp"
 #include "gateway/image/changes.hpp"
@@ -20,8 +21,7 @@
 
 namespace axisgate {
 
-using AxisNumber = std::uint16_t;
-inline constexpr AxisNumber kMaxAxisNumber = ChangeBoard::kPlaces - 1;
+static_assert(kMaxAxisNumber < ChangeBoard::kPlaces, "each axis has a place of its own");
 
 enum class LinkState : std::uint8_t { unknown = 0, setup = 1, online = 2, suspect = 3, offline = 4, link_down = 5 };
 enum class AxisState : std::uint8_t {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace axisgate::drive {
+namespace axisgate::model {
 namespace {
 
 struct StateRow {
@@ -62,4 +62,4 @@ Request402 request_of(std::uint16_t controlword) {
   return Request402::other;
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

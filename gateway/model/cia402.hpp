@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace axisgate::drive {
+namespace axisgate::model {
 
 /// The states of the power drive system, CiA 402-2 section 8.4.
 enum class State402 : std::uint8_t {
@@ -83,4 +83,4 @@ enum class Request402 : std::uint8_t {
 /// are facts of its model.
 [[nodiscard]] constexpr bool is_continuous(int mode) { return mode == 3 || mode == 4 || mode == 9 || mode == 10; }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

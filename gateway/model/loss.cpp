@@ -5,7 +5,7 @@
 
 #include "gateway/image/axis_image.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::model {
 
 std::uint16_t loss_stop_ms(const DriveModel& drive, std::optional<bool> holds) {
   if (!drive.stops_by_itself) return kGoesOn;
@@ -18,4 +18,4 @@ std::uint16_t loss_stop_ms(const DriveModel& drive, std::optional<bool> holds) {
   return static_cast<std::uint16_t>(std::min<std::int64_t>(ms, kLossNotKnown));
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

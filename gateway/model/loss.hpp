@@ -9,10 +9,10 @@
 
 #include "gateway/model/model.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::model {
 
 /// `holds`: whether the drive was read to hold what makes it notice (DriveModel::loss_objects); none: nobody knows.
 /// axisgate::kGoesOn: it does not stop; axisgate::kLossNotKnown: nobody knows.
 [[nodiscard]] std::uint16_t loss_stop_ms(const DriveModel& drive, std::optional<bool> holds);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

@@ -6,7 +6,7 @@
 
 #include "gateway/model/scale.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::model {
 namespace {
 
 std::uint32_t low_bytes(std::uint32_t raw, std::uint8_t size) {
@@ -176,11 +176,11 @@ bool DriveModel::needs(ObjectId object) const {
          });
 }
 
-ObjectId DriveModel::find(bus::ObjectAddress address) const {
+ObjectId DriveModel::find(ObjectAddress address) const {
   const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
     return !candidate.emulated && candidate.address == address;
   });
   return at == objects.end() ? kNoObject : static_cast<ObjectId>(at - objects.begin());
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "adapters/bus/bus_job.hpp"
+#include "gateway/core/numbers.hpp"
+#include "gateway/core/object_address.hpp"
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/capabilities.hpp"
@@ -20,7 +21,7 @@
 #include "gateway/image/lease.hpp"
 #include "gateway/model/cia402.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::model {
 
 /// Position in DriveModel::objects.
 using ObjectId = std::uint16_t;
@@ -34,9 +35,9 @@ enum class PollClass : std::uint8_t { fast, normal, slow, once };
 enum class Nvm : std::uint8_t { no, unknown, yes };
 
 struct ObjectDef {
-  std::string name;                   ///< "statusword", "A.velocity"
-  bus::AxisSlot slot = bus::kNoAxis;  ///< whose it is; kNoAxis: the whole drive's
-  bus::ObjectAddress address;
+  std::string name;         ///< "statusword", "A.velocity"
+  AxisSlot slot = kNoAxis;  ///< whose it is; kNoAxis: the whole drive's
+  ObjectAddress address;
   std::uint8_t size = 2;  ///< bytes: 1, 2 or 4
   bool is_signed = false;
   Range printed{INT64_MIN, INT64_MAX};  ///< what its maker's sheet says that it takes
@@ -201,7 +202,7 @@ struct Check {
   std::string name;
   Condition bad;
   AxisAlarm alarm{};
-  bus::AxisSlot slot = bus::kNoAxis;
+  AxisSlot slot = kNoAxis;
   std::string text;  ///< what is wrong and what it means
   std::vector<ObjectWrite> remedy;
 };
@@ -378,14 +379,13 @@ struct DriveModel {
                                       std::chrono::milliseconds(1000)};
 
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
-  [[nodiscard]] ObjectId find(bus::ObjectAddress address) const;  ///< kNoObject where no object has it
+  [[nodiscard]] ObjectId find(ObjectAddress address) const;  ///< kNoObject where no object has it
   [[nodiscard]] bool needs_for_state(ObjectId object) const;
   /// Without this object nothing may move: what needs_for_state() says, and the position.
   [[nodiscard]] bool needs(ObjectId object) const;
 };
 
 [[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }
-
 /// What must be read to know DriveModel::constants, each object once.
 [[nodiscard]] std::vector<ObjectId> constant_objects(const DriveModel& model);
 /// The number of a constant by what the drive holds (`number_of` gives no value for what is not known); none where a
@@ -398,4 +398,4 @@ struct DriveModel {
 [[nodiscard]] std::vector<ObjectWrite> setup_writes(
     const DriveModel& model, const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <stdexcept>
 
-namespace axisgate::drive {
+namespace axisgate::model {
 namespace {
 
 struct BaseRow {
@@ -150,4 +150,4 @@ void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& 
     binding.limits = intersection(recipe.allowed, registers_within(intersection(recipe.raw, object.range()), *scale));
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

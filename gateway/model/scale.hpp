@@ -13,7 +13,7 @@
 
 #include "gateway/model/model.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::model {
 
 /// What a unit counts, before the drive's own factors.
 enum class Base : std::uint8_t { rpm, rps, rpm_per_s, rps_per_s, rev, arms, percent, degc, volt };
@@ -65,4 +65,4 @@ using Constants = std::map<std::string, Rational, std::less<>>;
 /// then hold nothing at all (first above second). Never throws; leaves a binding that waits for nothing alone.
 void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& constants, const ObjectDef& object);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::model

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 using boost::asio::local::stream_protocol;
@@ -128,4 +128,4 @@ ControlSocket::~ControlSocket() {
   shared_->acceptor.close(ignored);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -14,7 +14,7 @@
 
 #include "gateway/process/reload.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 /// "reload\n" is what is said; the answer is kReloadDone or kReloadRefused, and the result's lines, one each.
 inline constexpr std::string_view kReloadRequest = "reload\n";
@@ -43,4 +43,4 @@ class ControlSocket {
   std::shared_ptr<Shared> shared_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

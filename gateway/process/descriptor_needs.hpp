@@ -9,9 +9,9 @@
 #include "gateway/upstream/dds_host/child_process.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptor_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
-[[nodiscard]] inline modbus_tcp::DescriptorNeeds descriptor_needs(const Config& config) {
+[[nodiscard]] inline modbus_tcp::DescriptorNeeds descriptor_needs(const config::Config& config) {
   modbus_tcp::DescriptorNeeds needs;
   needs.listeners = config.modbus_tcp.size();
   needs.buses = config.buses.size();
@@ -20,4 +20,4 @@ namespace axisgate::app {
   return needs;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -8,9 +8,9 @@
 
 #include "gateway/compose/gateway.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 /// Everything passed by reference must outlive the wires that are made.
-[[nodiscard]] MakeWire device_wires(boost::asio::io_context& io, Runtime& runtime, const Log& log);
+[[nodiscard]] compose::MakeWire device_wires(boost::asio::io_context& io, Runtime& runtime, const Log& log);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

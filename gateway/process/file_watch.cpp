@@ -4,8 +4,8 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
-namespace axisgate::app {
-FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<drive::FileRead> read,
+namespace axisgate::process {
+FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<profile::FileRead> read,
                      std::function<void(const std::string& file)> on_change)
     : io_(io),
       runtime_(runtime),
@@ -15,7 +15,7 @@ FileWatch::FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<
   timer_->expires_at(runtime_.now() + kPeriod);
 }
 
-void FileWatch::take(std::vector<drive::FileRead> read) {
+void FileWatch::take(std::vector<profile::FileRead> read) {
   boost::asio::post(thread_, [this, read = std::move(read)]() mutable { watched_ = std::move(read); });
 }
 
@@ -23,8 +23,8 @@ void FileWatch::take(std::vector<drive::FileRead> read) {
 void FileWatch::look() {
   boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
     std::string differs;
-    for (const drive::FileRead& each : watched_)
-      if (differs.empty() && drive::read_file(each.file) != each) differs = each.file;
+    for (const profile::FileRead& each : watched_)
+      if (differs.empty() && profile::read_file(each.file) != each) differs = each.file;
     boost::asio::post(io_, [this, alive, differs] {
       if (!alive.expired()) on_looked(differs);
     });
@@ -38,4 +38,4 @@ void FileWatch::on_looked(const std::string& file) {
   on_change_(file);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

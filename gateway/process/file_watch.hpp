@@ -15,7 +15,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/profile/json/json_schema.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 class FileWatch {
  public:
@@ -23,10 +23,10 @@ class FileWatch {
 
   /// `read` is what runs. `on_change(file)`: on the loop, when the answer changes: the first file that differs, is gone
   /// or has appeared; empty: none does any more.
-  FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<drive::FileRead> read,
+  FileWatch(boost::asio::io_context& io, Runtime& runtime, std::vector<profile::FileRead> read,
             std::function<void(const std::string& file)> on_change);
   /// From now on these are what runs.
-  void take(std::vector<drive::FileRead> read);
+  void take(std::vector<profile::FileRead> read);
 
  private:
   void look();
@@ -34,7 +34,7 @@ class FileWatch {
 
   boost::asio::io_context& io_;
   Runtime& runtime_;
-  std::vector<drive::FileRead> watched_;  ///< the thread's, once it runs
+  std::vector<profile::FileRead> watched_;  ///< the thread's, once it runs
   std::function<void(const std::string&)> on_change_;
   std::string reported_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< what is posted to the loop may outlive this
@@ -42,4 +42,4 @@ class FileWatch {
   boost::asio::thread_pool thread_{1};  ///< last: joined before the rest goes
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -9,7 +9,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 class LoopWatch {
  public:
@@ -35,4 +35,4 @@ class LoopWatch {
   std::unique_ptr<Timer> timer_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -12,9 +12,10 @@
 #include "gateway/process/descriptor_needs.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
-Reload::Reload(boost::asio::io_context& io, Config running, std::function<LoadResult()> load, const Running& with)
+Reload::Reload(boost::asio::io_context& io, config::Config running, std::function<config::LoadResult()> load,
+               const Running& with)
     : io_(io), running_(std::move(running)), load_(std::move(load)), with_(with) {}
 
 void Reload::begin(Done done) {
@@ -22,25 +23,25 @@ void Reload::begin(Done done) {
   if (with_.gateway.ends()) return done({false, {"the gateway ends"}});
   done_ = std::move(done);
   boost::asio::post(thread_, [this, alive = std::weak_ptr(alive_)] {
-    auto loaded = std::make_shared<LoadResult>(load_());
+    auto loaded = std::make_shared<config::LoadResult>(load_());
     boost::asio::post(io_, [this, alive, loaded] {
       if (!alive.expired()) on_loaded(std::move(*loaded));
     });
   });
 }
 
-void Reload::on_loaded(LoadResult loaded) {
+void Reload::on_loaded(config::LoadResult loaded) {
   if (with_.gateway.ends()) return;
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&loaded)) {
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&loaded)) {
     std::vector<std::string> lines;
-    for (const ConfigFault& fault : *faults) lines.push_back(text(fault));
+    for (const config::ConfigFault& fault : *faults) lines.push_back(text(fault));
     return refuse(std::move(lines));
   }
-  change(std::get<LoadedConfig>(std::move(loaded)));
+  change(std::get<config::LoadedConfig>(std::move(loaded)));
 }
 
-void Reload::change(LoadedConfig wanted) {
-  const ReloadPlan plan = plan_reload(running_, wanted.config);
+void Reload::change(config::LoadedConfig wanted) {
+  const compose::ReloadPlan plan = compose::plan_reload(running_, wanted.config);
   std::vector<std::string> why_not = plan.refusals;
   for (std::string& line : clients_in_the_way(plan)) why_not.push_back(std::move(line));
   if (!why_not.empty()) return refuse(std::move(why_not));
@@ -50,8 +51,8 @@ void Reload::change(LoadedConfig wanted) {
     return refuse({fmt::format("{}: {}", wanted.config.file, error.what())});
   }
   for (const std::string& warning : wanted.warnings) with_.gateway.report(EventKind::warning, warning, true);
-  std::vector<StartLine> start = start_lines(wanted, AXISGATE_VERSION);
-  Config config = wanted.config;
+  std::vector<compose::StartLine> start = compose::start_lines(wanted, AXISGATE_VERSION);
+  config::Config config = wanted.config;
   with_.gateway.reload(
       plan, std::move(wanted.config), std::move(wanted.models), [this, plan] { return clients_in_the_way(plan); },
       [this, plan, config = std::move(config), start = std::move(start)](std::vector<std::string> not_done) mutable {
@@ -69,7 +70,7 @@ bool may_stop_with_a_client(const AxisImage& axis, bool nothing_else_would) {
 }
 
 // A connection that is closed would end what keeps a motor under its owner's command.
-std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) const {
+std::vector<std::string> Reload::clients_in_the_way(const compose::ReloadPlan& plan) const {
   std::vector<std::string> out;
   for (const auto& axis : with_.gateway.image().axes()) {
     const drive::Drive* drive = with_.gateway.drive_of(axis->number);
@@ -93,17 +94,18 @@ std::vector<std::string> Reload::clients_in_the_way(const ReloadPlan& plan) cons
   return out;
 }
 
-void Reload::commit(const ReloadPlan& plan, Config wanted, const std::vector<StartLine>& start) {
+void Reload::commit(const compose::ReloadPlan& plan, config::Config wanted,
+                    const std::vector<compose::StartLine>& start) {
   with_.server.commit(modbus_tcp::take_descriptors(descriptor_needs(wanted)));
   if (with_.dds != nullptr && wanted.dds) with_.dds->take_axes(wanted.dds->units);
   wanted.read_by_dds = running_.read_by_dds;  // axisgate-dds has not read them anew
-  with_.files.take(watched_files(wanted));
+  with_.files.take(config::watched_files(wanted));
   running_ = std::move(wanted);
   std::vector<std::string> lines = plan.changes;
   if (lines.empty()) lines.emplace_back("nothing has changed");
   with_.gateway.report(EventKind::boot, fmt::format("{} was read anew: {}", running_.file, fmt::join(lines, "; ")),
                        true);
-  for (const StartLine& line : plan.changes.empty() ? std::vector<StartLine>() : start)
+  for (const compose::StartLine& line : plan.changes.empty() ? std::vector<compose::StartLine>() : start)
     with_.log.write(LogLevel::info, line.source, line.text, LogPace::each);
   end({true, std::move(lines)});
 }
@@ -116,4 +118,4 @@ void Reload::refuse(std::vector<std::string> why_not) {
 
 void Reload::end(ReloadResult result) { std::exchange(done_, nullptr)(result); }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -19,7 +19,7 @@
 #include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/server/server.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 struct ReloadResult {
   bool done = false;
@@ -31,7 +31,7 @@ class Reload {
  public:
   /// What runs. `dds`: nullptr where the configuration has none.
   struct Running {
-    Gateway& gateway;
+    compose::Gateway& gateway;
     modbus_tcp::Server& server;
     dds::DdsServer* dds;
     FileWatch& files;
@@ -40,23 +40,24 @@ class Reload {
   using Done = std::function<void(const ReloadResult&)>;
 
   /// `load` is called on the thread. `running`: what `with` was made from. Everything referred to outlives the reload.
-  Reload(boost::asio::io_context& io, Config running, std::function<LoadResult()> load, const Running& with);
+  Reload(boost::asio::io_context& io, config::Config running, std::function<config::LoadResult()> load,
+         const Running& with);
 
   /// `done` is called once, on the loop; at once where another reload is under way. Not at all where the gateway ends
   /// before. The result is an event, too.
   void begin(Done done);
 
  private:
-  void on_loaded(LoadResult loaded);
-  void change(LoadedConfig wanted);
-  [[nodiscard]] std::vector<std::string> clients_in_the_way(const ReloadPlan& plan) const;
-  void commit(const ReloadPlan& plan, Config wanted, const std::vector<StartLine>& start);
+  void on_loaded(config::LoadResult loaded);
+  void change(config::LoadedConfig wanted);
+  [[nodiscard]] std::vector<std::string> clients_in_the_way(const compose::ReloadPlan& plan) const;
+  void commit(const compose::ReloadPlan& plan, config::Config wanted, const std::vector<compose::StartLine>& start);
   void refuse(std::vector<std::string> why_not);
   void end(ReloadResult result);
 
   boost::asio::io_context& io_;
-  Config running_;
-  std::function<LoadResult()> load_;
+  config::Config running_;
+  std::function<config::LoadResult()> load_;
   Running with_;
   Done done_{};  ///< of the reload that is under way
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
@@ -67,4 +68,4 @@ class Reload {
 /// `nothing_else_would`: no drive that notices a dead gateway, and none that CiA 402 has a state for.
 [[nodiscard]] bool may_stop_with_a_client(const AxisImage& axis, bool nothing_else_would);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

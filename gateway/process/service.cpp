@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 /// Of the watchdog's time: fed so often that one late turn costs nothing.
@@ -96,4 +96,4 @@ void Service::feed() {
   if (all_turn_(2 * each)) teller_->tell("WATCHDOG=1", 1);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

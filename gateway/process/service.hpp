@@ -12,7 +12,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 inline constexpr Duration kLastReport = std::chrono::seconds(1);
 
@@ -40,4 +40,4 @@ class Service {
   std::shared_ptr<Teller> teller_;  ///< its thread's, too: whoever listens may never take what it is sent
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

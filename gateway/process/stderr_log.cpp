@@ -14,7 +14,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 /// A pipe whose reader hangs, a terminal held with Ctrl-S: writing would wait, and the motors with it.
@@ -65,4 +65,4 @@ Log stderr_log(LogLevel most_detailed) {
       most_detailed);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -6,8 +6,8 @@
 
 #include "gateway/core/log.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 
 [[nodiscard]] Log stderr_log(LogLevel most_detailed);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::process

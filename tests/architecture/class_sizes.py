@@ -9,8 +9,8 @@ MOST_FUNCTIONS, MOST_FIELDS = 45, 18
 FEWEST_FUNCTIONS = 7
 # Those that are larger: (functions, fields) as they are. A figure here only ever becomes smaller, and no class is added.
 LARGER = {
-    "axisgate::app::Gateway": (32, 21),
-    "axisgate::app::ManualPlan": (51, 30),
+    "axisgate::compose::Gateway": (32, 21),
+    "axisgate::commands::ManualPlan": (51, 30),
     "axisgate::bus::Bus": (37, 19),
     "axisgate::can::SocketCanLink": (18, 25),
     "axisgate::drive::Axis": (128, 27),

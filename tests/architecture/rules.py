@@ -15,6 +15,7 @@ from sources import CODE, SOURCE_FOLDERS, files, lines
 LAYERS = [
     ("gateway/core", ()),
     ("gateway/image", ("gateway/core",)),
+    ("gateway/listing", ("gateway/image", "gateway/core")),
     # Reads the command lines of all programs, whatever they are for.
     ("gateway/manual", ()),
     ("adapters/bus", ("gateway/core",)),
@@ -27,7 +28,7 @@ LAYERS = [
     ("adapters/keya", ("adapters/can", "adapters/bus", "gateway/core")),
     ("adapters/serial", ("adapters/bus", "gateway/core")),
     ("adapters/kinco", ("adapters/bus", "gateway/core")),
-    ("gateway/model", ("gateway/image", "adapters/bus", "gateway/core")),
+    ("gateway/model", ("gateway/image", "gateway/core")),
     ("gateway/profile", ("gateway/model", "adapters/bus", "gateway/core")),
     ("gateway/drive", ("gateway/model", "gateway/image", "adapters/bus", "gateway/core")),
     ("gateway/upstream/modbus_tcp", ("gateway/image", "gateway/core")),
@@ -60,7 +61,7 @@ ONE_PLACE = {
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
-DECIDING = ("gateway/core/", "gateway/image/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
+DECIDING = ("gateway/core/", "gateway/image/", "gateway/listing/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
             "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/scan/plan/",
             "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/",
             "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/",
@@ -137,6 +138,26 @@ def arrows(root):
                 yield f"{name}:{number}: {folder} may not include {include[1]}"
             elif own in made and other in made and other != own and other not in graph[own]:
                 yield f"{name}:{number}: {own}/CMakeLists.txt does not name the library of {include[1]} in DEPENDS"
+
+
+# The namespace of a room; the first folder that a file fits holds. What stands inside may be nested deeper.
+NAMESPACES = [
+    ("gateway/core", "axisgate"), ("gateway/image", "axisgate"), ("adapters/asio", "axisgate"), ("gateway/main.cpp", None),
+    ("gateway/upstream/modbus_tcp", "axisgate::modbus_tcp"), ("gateway/upstream", "axisgate::dds"),
+    ("tests/simulated", "axisgate::simulated"), ("tests/axisgate_sim", "axisgate::simulated"), ("tests/model", "axisgate::test::reference"),
+    ("tests/bench", "axisgate::bench"), ("tests", None),
+]
+NAMESPACE = re.compile(r"^namespace (axisgate(?:::\w+)*) \{")
+
+
+def namespaces(root):
+    for name in files(root, {".cpp", ".hpp"}):
+        parts = name.split("/")
+        room = next((n for folder, n in NAMESPACES if name.startswith(folder)), f"axisgate::{parts[1]}")
+        for number, line in lines(root, name):
+            found = NAMESPACE.match(line)
+            if room and found and found[1] != room and not found[1].startswith(f"{room}::"):
+                yield f"{name}:{number}: what stands in this folder is in the namespace {room}"
 
 
 def one_place(root):
@@ -357,7 +378,7 @@ def licence(root):
             yield f"{name}:{1 + behind}: the line before all others, behind #! or <?xml, is: {wanted}"
 
 
-RULES = {"arrows": arrows, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
+RULES = {"arrows": arrows, "namespaces": namespaces, "one_place": one_place, "deciding": deciding, "headers": headers, "lengths": lengths, "words": words,
          "field_words": field_words, "cites": cites, "licence": licence, "class_sizes": class_sizes,
          "fault_proofs": fault_proofs, "rule_proofs": rule_proofs}
 

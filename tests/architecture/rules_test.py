@@ -72,6 +72,12 @@ class Rules(unittest.TestCase):
         self.write("gateway/new/a.cpp", '#include "gateway/core/error.hpp"\n')
         self.assert_breach("arrows", "gateway/new/a.cpp:1")
 
+    def test_a_namespace_that_is_not_named_after_its_room_is_found(self):
+        self.write("gateway/config/a.cpp", "namespace axisgate::app {\n")
+        self.write("gateway/config/b.cpp", "namespace axisgate::config::adapter {\n")
+        self.write("adapters/can/link/c.cpp", "namespace axisgate::can {\n")
+        self.assert_breach("namespaces", "gateway/config/a.cpp:1")
+
     def test_a_header_that_only_one_place_may_know_is_found(self):
         self.write("gateway/drive/a.cpp", "#include <linux/can/raw.h>\n")
         self.assert_breach("one_place", "gateway/drive/a.cpp:1")

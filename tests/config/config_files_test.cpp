@@ -6,7 +6,7 @@
 #include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,7 +58,7 @@ TEST_P(ValidConfig, IsTakenAndPlannedBelowItsLinesLimit) {
     for (const ConfigFault& fault : *faults) ADD_FAILURE() << text(fault);
     return;
   }
-  EXPECT_FALSE(check(std::get<LoadedConfig>(result)).overloaded);
+  EXPECT_FALSE(check::report(std::get<LoadedConfig>(result)).overloaded);
 }
 
 std::vector<std::string> valid_files() {
@@ -75,4 +75,4 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ValidConfig,
                          Values("../../../deploy/demo.json", "../../../deploy/example/gateway.json"), kStem);
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -3,7 +3,7 @@
 // missing.
 #include "tests/config/program.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using ::testing::HasSubstr;
@@ -83,4 +83,4 @@ TEST_F(DdsCommands, TopicsSaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -13,7 +13,7 @@
 
 #include "tests/profiles/mistakes.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 struct Ended {
   int code = -1;
@@ -55,4 +55,4 @@ class ProgramTest : public ::testing::Test {
   const test::OwnFolder own_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -7,7 +7,7 @@
 #include "tests/config/program.hpp"
 #include "tests/places.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TEST_F(Program, FindsItsProfilesWhereItIsInstalled) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

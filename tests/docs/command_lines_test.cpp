@@ -76,7 +76,7 @@ std::string complaint(const std::string& rest) {
   for (const std::string& word : words) arguments.push_back(word.c_str());
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const app::CommandLine line = app::parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+  const commands::CommandLine line = commands::parse_command_line(static_cast<int>(arguments.size()), arguments.data());
   const std::string said = testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
   return line.run != nullptr || line.exit_code == 0 ? std::string() : said;
 }

@@ -10,7 +10,6 @@ namespace {
 using namespace std::chrono_literals;
 using test::ArbiterReference;
 using test::BusJob;
-using test::DriveSlot;
 using test::JobId;
 using test::Priority;
 
@@ -100,8 +99,8 @@ class ArbiterPlay {
     const std::uint8_t what = input_.byte();
     const std::uint8_t how = input_.byte();
     BusJob job = test::job(static_cast<Priority>(what % 5), static_cast<DriveSlot>((what >> 3) % 3),
-                           static_cast<bus::AxisSlot>((what >> 5) & 1));
-    if ((what & 0x80) != 0 || job.priority == Priority::setup) job.axis = bus::kNoAxis;
+                           static_cast<AxisSlot>((what >> 5) & 1));
+    if ((what & 0x80) != 0 || job.priority == Priority::setup) job.axis = kNoAxis;
     if ((how & 1) != 0) job.start_by = now_ + std::chrono::milliseconds(how >> 2);
     job.survives_stop = (how & 2) != 0;
     if (job.priority == Priority::command && (how & 4) != 0) {

@@ -17,10 +17,10 @@ void command_line(Bytes content) {
   // Help and complaints are not looked at.
   std::streambuf* const out = std::cout.rdbuf(nullptr);
   std::streambuf* const err = std::cerr.rdbuf(nullptr);
-  const app::CommandLine line = app::parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+  const commands::CommandLine line = commands::parse_command_line(static_cast<int>(arguments.size()), arguments.data());
   std::cout.rdbuf(out);
   std::cerr.rdbuf(err);
-  must(line.run != nullptr || line.exit_code == 0 || line.exit_code == app::kWrongCommandLine,
+  must(line.run != nullptr || line.exit_code == 0 || line.exit_code == commands::kWrongCommandLine,
        "a command line is carried out, or wrong");
 }
 

@@ -35,29 +35,29 @@ class MemoryFile {
 
 void profile(Bytes content) {
   const MemoryFile file(content);
-  const drive::LoadedProfile loaded = drive::load_profile(file.path(), {kShippedProfiles});
-  for (const drive::Fault& fault : loaded.faults) must(!fault.message.empty(), "a mistake has its words");
+  const profile::LoadedProfile loaded = profile::load_profile(file.path(), {kShippedProfiles});
+  for (const profile::Fault& fault : loaded.faults) must(!fault.message.empty(), "a mistake has its words");
 }
 
 void configuration(Bytes content) {
   const MemoryFile file(content);
-  const app::LoadResult loaded = app::load_config(file.path(), {kShippedProfiles});
-  if (const auto* faults = std::get_if<std::vector<app::ConfigFault>>(&loaded)) {
+  const config::LoadResult loaded = config::load_config(file.path(), {kShippedProfiles});
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&loaded)) {
     must(!faults->empty(), "what is refused has its reason");
-    for (const app::ConfigFault& fault : *faults) must(!app::text(fault).empty(), "a mistake has its words");
+    for (const config::ConfigFault& fault : *faults) must(!config::text(fault).empty(), "a mistake has its words");
   } else {
-    const auto& good = std::get<app::LoadedConfig>(loaded);
+    const auto& good = std::get<config::LoadedConfig>(loaded);
     must(good.models.size() == good.config.buses.size(), "each bus has the models of its drives");
   }
 }
 
 void eds(Bytes content) {
-  const drive::Eds sheet = drive::parse_eds({reinterpret_cast<const char*>(content.data()), content.size()});
-  must(sheet.objects.size() <= drive::kMaxEdsObjects, "objects have their bound");
-  must(sheet.faults.size() <= drive::kMaxEdsFaults, "mistakes have their bound");
-  static const drive::LoadedProfile kProfile =
-      drive::load_profile(kShippedProfiles + "/leadshine-ld2-can.json", {kShippedProfiles});
-  for (const auto& each : drive::contradictions(kProfile.profile, sheet))
+  const profile::Eds sheet = profile::parse_eds({reinterpret_cast<const char*>(content.data()), content.size()});
+  must(sheet.objects.size() <= profile::kMaxEdsObjects, "objects have their bound");
+  must(sheet.faults.size() <= profile::kMaxEdsFaults, "mistakes have their bound");
+  static const profile::LoadedProfile kProfile =
+      profile::load_profile(kShippedProfiles + "/leadshine-ld2-can.json", {kShippedProfiles});
+  for (const auto& each : profile::contradictions(kProfile.profile, sheet))
     must(!each.message.empty(), "a contradiction has its words");
 }
 

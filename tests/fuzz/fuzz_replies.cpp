@@ -15,11 +15,11 @@ namespace {
 
 constexpr int kMostSteps = 100'000;  // more than any scan of a few nodes takes
 
-const std::vector<drive::Profile>& profiles() {
-  static const std::vector<drive::Profile> kProfiles = [] {
-    std::vector<drive::Profile> made;
+const std::vector<profile::Profile>& profiles() {
+  static const std::vector<profile::Profile> kProfiles = [] {
+    std::vector<profile::Profile> made;
     for (const char* name : {"kinco-jd", "leadshine-ld2-can", "id286pro"})
-      made.push_back(drive::load_profile(test::source_path("schemas/drives/") + name + ".json").profile);
+      made.push_back(profile::load_profile(test::source_path("schemas/drives/") + name + ".json").profile);
     return made;
   }();
   return kProfiles;
@@ -70,7 +70,7 @@ void must_end(Plan& plan) {
 }
 
 void scan(Input input) {
-  app::ScanPlan plan(profiles(), {1, 4});
+  commands::ScanPlan plan(profiles(), {1, 4});
   for (auto asked = plan.next(); input.more() && asked; asked = plan.next()) {
     must(asked->access == bus::Access::read, "a scan only reads");
     must(asked->node >= 1 && asked->node <= 4, "a scan asks those it was told to");
@@ -85,12 +85,12 @@ void scan(Input input) {
     }
   }
   must_end(plan);
-  for (const app::FoundNode& node : plan.found()) must_be_shown(node.name, false);
-  must_be_shown(app::scan_table(plan.found()), true);
+  for (const commands::FoundNode& node : plan.found()) must_be_shown(node.name, false);
+  must_be_shown(commands::scan_table(plan.found()), true);
 }
 
 void serial_scan(Input input) {
-  app::SerialScanPlan plan(profiles(), {.bauds = {38400, 9600}, .stations = {1, 3}});
+  commands::SerialScanPlan plan(profiles(), {.bauds = {38400, 9600}, .stations = {1, 3}});
   for (int steps = 0; plan.speech(); ++steps) {
     must(steps < kMostSteps, "a scan ends");
     const auto asked = plan.next();
@@ -99,40 +99,40 @@ void serial_scan(Input input) {
     must(asked->node >= 1 && asked->node <= 3, "a scan asks those it was told to");
     plan.on_result(input.more() ? any_result(input, *asked) : bus::ExchangeResult{.code = Errc::timed_out});
   }
-  must_be_shown(app::serial_scan_table(plan.found(), "/dev/lift"), true);
+  must_be_shown(commands::serial_scan_table(plan.found(), "/dev/lift"), true);
 }
 
 void hand_replies(Input input) {
-  const app::ManualListener listener{.order = static_cast<app::WordOrder>(input.below(3)),
-                                     .float_numbers = input.yes()};
+  const commands::ManualListener listener{.order = static_cast<commands::WordOrder>(input.below(3)),
+                                          .float_numbers = input.yes()};
   while (input.more()) {
     const Bytes reply = input.bytes(input.word() % 260);
-    must_be_shown(app::exception_text(app::exception_in(reply)), false);
-    must(app::identification_in(reply).size() <= reply.size(), "an object is part of its reply");
-    const auto registers = app::registers_in(reply, app::kManualRegisters);
-    must(!registers || registers->size() == app::kManualRegisters, "as many registers as were asked for");
-    const auto inputs = app::inputs_in(reply, 13);
+    must_be_shown(commands::exception_text(commands::exception_in(reply)), false);
+    must(commands::identification_in(reply).size() <= reply.size(), "an object is part of its reply");
+    const auto registers = commands::registers_in(reply, commands::kManualRegisters);
+    must(!registers || registers->size() == commands::kManualRegisters, "as many registers as were asked for");
+    const auto inputs = commands::inputs_in(reply, 13);
     if (!registers) continue;
-    const app::ManualView view = app::manual_view(*registers, inputs.value_or(input.word()), listener);
-    must_be_shown(app::manual_line(1, view, "moves"), false);
-    must_be_shown(app::owner_text(view), false);
+    const commands::ManualView view = commands::manual_view(*registers, inputs.value_or(input.word()), listener);
+    must_be_shown(commands::manual_line(1, view, "moves"), false);
+    must_be_shown(commands::owner_text(view), false);
   }
 }
 
 void top_table(Input input) {
-  app::TopReading reading;
+  commands::TopReading reading;
   reading.server = "127.0.0.1:1502";
   reading.float_numbers = input.yes();
   const std::size_t columns = input.byte();
   for (auto& each : reading.gateway) each = input.word();
   while (input.more() && reading.axes.size() < 4) {
-    app::AxisReading axis{.axis = static_cast<AxisNumber>(1 + input.word() % 499)};
+    commands::AxisReading axis{.axis = static_cast<AxisNumber>(1 + input.word() % 499)};
     for (auto& each : axis.registers) each = input.word();
-    if (input.yes()) app::mark_out_of_reach(axis);
+    if (input.yes()) commands::mark_out_of_reach(axis);
     reading.axes.push_back(axis);
   }
-  static_cast<void>(app::word_order(reading.gateway));
-  must_be_shown(app::text_of(app::table_lines(reading, columns)), true);
+  static_cast<void>(commands::word_order(reading.gateway));
+  must_be_shown(commands::text_of(commands::table_lines(reading, columns)), true);
 }
 
 void can_errors(Input input) {

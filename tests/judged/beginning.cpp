@@ -7,7 +7,7 @@
 
 namespace axisgate::test::judged {
 
-using namespace model;
+using namespace reference;
 
 namespace {
 
@@ -64,7 +64,7 @@ std::optional<std::int64_t> velocity_limit(Subject subject, std::uint64_t seed) 
 
 std::size_t together(std::uint64_t seed) {
   if (seed % 4 == 1) return 1;  // "client": "address"
-  return seed % 3 == 2 ? 2 : seed % 6 == 0 ? model::kModbus : 1;
+  return seed % 3 == 2 ? 2 : seed % 6 == 0 ? reference::kModbus : 1;
 }
 
 Beginning begin(obey::Plant& plant, const Program& program, std::uint64_t seed) {

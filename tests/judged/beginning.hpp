@@ -10,10 +10,10 @@
 namespace axisgate::test::judged {
 
 struct Beginning {
-  model::ContractOptions options{};
-  model::World world{};
-  std::uint32_t commands = 0;  ///< register 36, one bit for each that the drive has
-  model::Rows parameters{};    ///< what it holds in the rows 46, 47 and 62 to 76 that it has
+  reference::ContractOptions options{};
+  reference::World world{};
+  std::uint32_t commands = 0;    ///< register 36, one bit for each that the drive has
+  reference::Rows parameters{};  ///< what it holds in the rows 46, 47 and 62 to 76 that it has
 };
 
 /// What the axis's lease is like, each in some of the runs.

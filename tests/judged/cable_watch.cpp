@@ -7,7 +7,7 @@ namespace axisgate::test::judged {
 namespace {
 
 using namespace std::chrono_literals;
-using namespace model;
+using namespace reference;
 
 /// What was asked for is on the wire within its start and answer deadlines, or never.
 constexpr Duration kLongestWay = 1500ms;
@@ -155,7 +155,7 @@ bool CableWatch::take(int Credit::*kind) {
 
 void CableWatch::look() {
   if (!plant_.stage.gateway_runs()) return;
-  const app::Gateway& gateway = plant_.stage.gateway();
+  const compose::Gateway& gateway = plant_.stage.gateway();
   const std::size_t axes = plant_.stage.gateway().image().axes().size();
   const std::size_t most = axes * (bus::kMaxJobsPerAxis + bus::kMaxStopsPerAxis + bus::kMaxSetupsPerDrive);
   if (plant_.stage.gateway().bus(0).queue_depth() > most) violated_("the queue is over its bound");

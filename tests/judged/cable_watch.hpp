@@ -30,7 +30,7 @@ class CableWatch {
   CableWatch(obey::Plant& plant, Violated violated, std::function<void(const CableFrame&)> also_tell);
 
   /// A client's write: what it may start and enable. Until it is answered, or for the longest way of a write batch.
-  void asked(int request, const model::Write& write);
+  void asked(int request, const reference::Write& write);
   void answered(int request);
   void unanswered(int request);
   void gateway_died();

@@ -11,7 +11,7 @@
 
 namespace axisgate::test::judged {
 
-using namespace model;
+using namespace reference;
 using obey::Answer;
 
 namespace {

@@ -5,7 +5,7 @@
 
 namespace axisgate::test::judged {
 
-using namespace model;
+using namespace reference;
 
 bool History::was_at(std::int64_t position, std::int64_t age_ms) const {
   std::int64_t least = position, most = position;

@@ -85,10 +85,10 @@ void Neighbours::look_at_drive(Motor& motor) {
 
 bool Neighbours::all_valid(const Motor& motor) {
   const AxisImage& image = plant_.stage.axis(motor.axis);
-  for (const drive::AxisModel& axis : plant_.stage.gateway().drive_of(motor.axis)->model().axes)
-    for (const drive::Binding& binding : axis.bindings) {
+  for (const model::AxisModel& axis : plant_.stage.gateway().drive_of(motor.axis)->model().axes)
+    for (const model::Binding& binding : axis.bindings) {
       const Sample& sample = image[binding.quantity];
-      if (axis.number == motor.axis && binding.poll != drive::PollClass::once && sample.received && !sample.valid)
+      if (axis.number == motor.axis && binding.poll != model::PollClass::once && sample.received && !sample.valid)
         return false;
     }
   return true;

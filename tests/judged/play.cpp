@@ -7,7 +7,7 @@
 
 namespace axisgate::test::judged {
 
-using namespace model;
+using namespace reference;
 using obey::Plant;
 using obey::PlantOptions;
 

@@ -5,7 +5,7 @@
 
 namespace axisgate::test::judged {
 
-using namespace model;
+using namespace reference;
 
 namespace {
 

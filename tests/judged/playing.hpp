@@ -61,7 +61,7 @@ class Play {
   [[nodiscard]] std::int64_t now_ms() { return elapsed_ms(began_, plant_.stage.runtime().now()); }
   void begin();
   void act(const Step& step);
-  void send(std::size_t client, model::Write write, bool at_once);
+  void send(std::size_t client, reference::Write write, bool at_once);
   void outage(const Step& step);
   void die(const Step& step);
   void pass(std::int64_t ms);
@@ -114,7 +114,7 @@ class Play {
   Clients clients_;
   Plague plague_;
   std::optional<Writers> writers_;
-  std::optional<model::Contract> contract_;
+  std::optional<reference::Contract> contract_;
   std::optional<Watches> watches_;
   Outcome outcome_;
   Instant began_{};
@@ -122,10 +122,10 @@ class Play {
   History seen_;
   /// The exception that this client's newest request of registers was answered with; none: what register 25 tells is
   /// not known. Of what is done it may tell of an older one, or 10 of another row of the block.
-  std::array<std::optional<int>, model::kModbus> told_{};
-  std::array<int, model::kModbus> newest_{};  ///< of each client, but of objects
-  std::set<std::int64_t> ids_{0};             ///< of commands, that anybody has written
-  std::set<std::size_t> looks_at_once_;       ///< clients whose move was just answered
+  std::array<std::optional<int>, reference::kModbus> told_{};
+  std::array<int, reference::kModbus> newest_{};  ///< of each client, but of objects
+  std::set<std::int64_t> ids_{0};                 ///< of commands, that anybody has written
+  std::set<std::size_t> looks_at_once_;           ///< clients whose move was just answered
   bool wire_whole_ = true;
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;

@@ -44,7 +44,7 @@ rc::Gen<std::uint8_t> below(std::size_t bound) {
 
 rc::Gen<Step> step(Weather weather) {
   return rc::gen::build<Step>(
-      rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(model::kModbus)),
+      rc::gen::set(&Step::deed, deed(weather)), rc::gen::set(&Step::client, below(reference::kModbus)),
       rc::gen::set(&Step::command, below(kCommands.size())), rc::gen::set(&Step::id, below(5)),
       rc::gen::set(&Step::position, below(kPositions.size() + 2)),
       rc::gen::set(&Step::speed, below(kSpeeds.size() + 2)), rc::gen::set(&Step::number, below(24)),

@@ -12,7 +12,7 @@
 namespace axisgate::test::judged {
 namespace {
 
-using namespace model;
+using namespace reference;
 
 /// 3.2: what the motor did for as long as a drive may take to tell it.
 bool velocity_fits(std::int64_t shown, std::int64_t age_ms, const History& history) {

@@ -32,7 +32,7 @@ struct Shown {
 
 /// 3.3 Outcomes: what register 25 may tell of a request that was answered with this exception.
 [[nodiscard]] bool result_fits(int exception, int result);
-[[nodiscard]] std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, model::Contract& contract,
+[[nodiscard]] std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, reference::Contract& contract,
                                                   const History& history);
 
 }  // namespace axisgate::test::judged

@@ -22,7 +22,7 @@ std::optional<std::uint32_t> carried(Bytes sdo) {
 std::size_t width_of(Byte response) { return response == 0x43 ? 4 : response == 0x4B ? 2 : response == 0x4F ? 1 : 0; }
 
 /// Whether such an answer, or such a write, gave the object this number.
-bool kinco_says(const simulated::Exchange& exchange, const drive::ObjectDef& object, std::int64_t number) {
+bool kinco_says(const simulated::Exchange& exchange, const model::ObjectDef& object, std::int64_t number) {
   using namespace simulated;
   if (index_of(exchange.request) != object.address.index || sub_of(exchange.request) != object.address.sub)
     return false;
@@ -36,7 +36,7 @@ bool kinco_says(const simulated::Exchange& exchange, const drive::ObjectDef& obj
   return false;
 }
 
-bool can_says(const simulated::CanExchange& exchange, const drive::ObjectDef& object, std::int64_t number) {
+bool can_says(const simulated::CanExchange& exchange, const model::ObjectDef& object, std::int64_t number) {
   constexpr std::size_t kId = 2, kRecordedSdo = kId + 8;
   if (exchange.request.size() != kRecordedSdo) return false;
   const Bytes request = Bytes(exchange.request).subspan(kId);
@@ -51,7 +51,7 @@ bool can_says(const simulated::CanExchange& exchange, const drive::ObjectDef& ob
 
 /// Whether such an answer gave the object this number: index and sub-index with what motor A and B have each, or a
 /// query's code. What is written to a Keya is a trigger.
-bool keya_says(Tongue tongue, Bytes request, Bytes sent, const drive::ObjectDef& object, std::int64_t number) {
+bool keya_says(Tongue tongue, Bytes request, Bytes sent, const model::ObjectDef& object, std::int64_t number) {
   const auto holds = [&](Bytes data) {
     const std::size_t from = object.address.byte;
     return from + object.size <= data.size() &&
@@ -172,32 +172,32 @@ void StoredWatch::look(bool twice) {
       check_values(watched);
     }
     watched.received.clear();
-    for (const drive::AxisModel& axis : watched.drive->model().axes) check_axis(watched, axis);
+    for (const model::AxisModel& axis : watched.drive->model().axes) check_axis(watched, axis);
   }
 }
 
 void StoredWatch::take_as_seen(Watched& watched) {
   for (std::size_t id = 0; id < watched.seen.size(); ++id) {
-    const drive::ObjectState& state = watched.drive->store()[static_cast<drive::ObjectId>(id)];
+    const drive::ObjectState& state = watched.drive->store()[static_cast<model::ObjectId>(id)];
     watched.seen[id] = {state.exchange, state.sent_at};
   }
 }
 
 void StoredWatch::check_values(Watched& watched) {
   for (std::size_t id = 0; id < watched.seen.size(); ++id) {
-    const drive::ObjectState& state = watched.drive->store()[static_cast<drive::ObjectId>(id)];
+    const drive::ObjectState& state = watched.drive->store()[static_cast<model::ObjectId>(id)];
     const Entry now_seen{state.exchange, state.sent_at};
     if (!state.known || state.emulated || watched.seen[id] == now_seen) continue;
     watched.seen[id] = now_seen;
     if (state.sent_at == axisgate::kLongAgo) continue;  // nothing confirms it any more, and it is shown to nobody
-    const drive::ObjectDef& object = watched.drive->model().object(static_cast<drive::ObjectId>(id));
+    const model::ObjectDef& object = watched.drive->model().object(static_cast<model::ObjectId>(id));
     if (!object.trigger && !was_sent(watched, object, state) && keeps_its_word(watched.drive->model()))
       violated(object.name + " holds " + std::to_string(state.number) + ", which was not sent for it");
   }
 }
 
 // One exchange at a time is on the line: the first request for it that the drive heard after it was sent is the one.
-bool StoredWatch::was_sent(Watched& watched, const drive::ObjectDef& object, const drive::ObjectState& state) {
+bool StoredWatch::was_sent(Watched& watched, const model::ObjectDef& object, const drive::ObjectState& state) {
   const bool by_process_data = std::ranges::any_of(watched.received, [&](const Value& value) {
     return value.at == state.sent_at && value.place == object.address && object.number(value.raw) == state.number;
   });
@@ -224,7 +224,7 @@ bool StoredWatch::was_sent(Watched& watched, const drive::ObjectDef& object, con
 
 // "Within worst_reply_ms" is part of the promise: a drive that is later than the timeout and the silence together may
 // be taken at its late word.
-bool StoredWatch::keeps_its_word(const drive::DriveModel& model) {
+bool StoredWatch::keeps_its_word(const model::DriveModel& model) {
   return plant_.stage.at_link(0, [&](auto& link) {
     return std::ranges::none_of(link.line().journal().entries(), [&](const auto& exchange) {
       return exchange.station == model.node &&
@@ -234,9 +234,9 @@ bool StoredWatch::keeps_its_word(const drive::DriveModel& model) {
 }
 
 // A value may also be confirmed by reads alone, where the node does not take the event timer.
-Duration StoredWatch::period(const drive::Drive& drive, drive::ObjectId object) const {
-  const drive::CanopenProperties& facts = drive.model().canopen;
-  for (const drive::TpdoProperties& tpdo : facts.tpdos) {
+Duration StoredWatch::period(const drive::Drive& drive, model::ObjectId object) const {
+  const model::CanopenProperties& facts = drive.model().canopen;
+  for (const model::TpdoProperties& tpdo : facts.tpdos) {
     if (std::ranges::find(tpdo.map, object) == tpdo.map.end()) continue;
     const Duration event = std::chrono::milliseconds(tpdo.event_ms.value_or(std::uint16_t{0}));
     return std::min(drive.store().period(object), std::max(event, facts.confirm));
@@ -244,32 +244,32 @@ Duration StoredWatch::period(const drive::Drive& drive, drive::ObjectId object) 
   return {};
 }
 
-Duration StoredWatch::stale_after(const Watched& watched, const drive::AxisModel& axis,
-                                  const drive::Binding& binding) const {
+Duration StoredWatch::stale_after(const Watched& watched, const model::AxisModel& axis,
+                                  const model::Binding& binding) const {
   Duration longest = watched.drive->model().poll_period[static_cast<std::size_t>(binding.poll)];
-  const auto look = [&](drive::ObjectId object) {
-    if (object != drive::kNoObject) longest = std::max(longest, period(*watched.drive, object));
+  const auto look = [&](model::ObjectId object) {
+    if (object != model::kNoObject) longest = std::max(longest, period(*watched.drive, object));
   };
   look(binding.object);
-  for (const drive::BitField& field : binding.bits) look(field.object);
+  for (const model::BitField& field : binding.bits) look(field.object);
   if (binding.quantity == Quantity::error_code) std::ranges::for_each(axis.fault_words, look);
   return std::max<Duration>(std::chrono::milliseconds(300), 3 * longest);
 }
 
-void StoredWatch::check_axis(Watched& watched, const drive::AxisModel& axis) {
+void StoredWatch::check_axis(Watched& watched, const model::AxisModel& axis) {
   const AxisImage& image = plant_.stage.axis(axis.number);
   const Instant now = plant_.stage.runtime().now();
   const bool canopen = tongue_of(plant_.subject) == Tongue::canopen;
   const std::string name = "axis " + std::to_string(axis.number) + " ";
   if (canopen && image.reachable() && now - watched.heard_at > kLongestSilence)
     violated(name + "counts as there, and has said nothing for long");
-  for (const drive::Binding& binding : axis.bindings) {
+  for (const model::Binding& binding : axis.bindings) {
     const Sample& sample = image[binding.quantity];
     if (!sample.valid) continue;
     const std::string what = name + std::string(axisgate::row(binding.quantity).name);
     if (!image.reachable()) violated(what + " is valid of a drive that is not there");
     if (canopen && sample.at < watched.started_at) violated(what + " is valid and of before its restart");
-    if (binding.poll == drive::PollClass::once) continue;
+    if (binding.poll == model::PollClass::once) continue;
     if (now - sample.at > stale_after(watched, axis, binding) + std::chrono::milliseconds(2))
       violated(what + " is valid and " + std::to_string((now - sample.at) / std::chrono::milliseconds(1)) + " ms old");
   }

@@ -34,7 +34,7 @@ class StoredWatch {
   /// One value of a process data frame, or of a Keya's heartbeat.
   struct Value {
     Instant at;
-    bus::ObjectAddress place;
+    ObjectAddress place;
     std::uint32_t raw;
   };
   struct Watched {
@@ -52,12 +52,12 @@ class StoredWatch {
   void take_heartbeat(const can::CanFrame& frame);
   void take_process_data(std::size_t position, std::size_t tpdo, const can::CanFrame& frame);
   void check_values(Watched& watched);
-  void check_axis(Watched& watched, const drive::AxisModel& axis);
-  [[nodiscard]] bool was_sent(Watched& watched, const drive::ObjectDef& object, const drive::ObjectState& state);
-  [[nodiscard]] bool keeps_its_word(const drive::DriveModel& model);
-  [[nodiscard]] Duration stale_after(const Watched& watched, const drive::AxisModel& axis,
-                                     const drive::Binding& binding) const;
-  [[nodiscard]] Duration period(const drive::Drive& drive, drive::ObjectId object) const;
+  void check_axis(Watched& watched, const model::AxisModel& axis);
+  [[nodiscard]] bool was_sent(Watched& watched, const model::ObjectDef& object, const drive::ObjectState& state);
+  [[nodiscard]] bool keeps_its_word(const model::DriveModel& model);
+  [[nodiscard]] Duration stale_after(const Watched& watched, const model::AxisModel& axis,
+                                     const model::Binding& binding) const;
+  [[nodiscard]] Duration period(const drive::Drive& drive, model::ObjectId object) const;
   void violated(const std::string& what) { violated_(what); }
 
   obey::Plant& plant_;

@@ -3,7 +3,7 @@
 
 namespace axisgate::test::judged {
 
-using namespace model;
+using namespace reference;
 
 namespace {
 constexpr std::int64_t kEnabledWord = 15;

@@ -13,7 +13,7 @@ class Writers {
   /// `profile`: rows 48 to 52 as the drive holds them; client a has them in its blocks, b writes zeros.
   /// `commands`: register 36, one bit for each that the drive has.
   /// `parameters`: what the drive holds in the rows 46, 47 and 62 to 76 that it has.
-  Writers(const Program& program, model::Rows profile, model::Rows parameters, std::uint32_t commands)
+  Writers(const Program& program, reference::Rows profile, reference::Rows parameters, std::uint32_t commands)
       : subject_(program.subject),
         flavour_(program.flavour),
         leases_(program.leases),
@@ -21,29 +21,29 @@ class Writers {
         parameters_(std::move(parameters)),
         commands_(commands) {}
 
-  [[nodiscard]] model::Write write_of(const Step& step);
+  [[nodiscard]] reference::Write write_of(const Step& step);
   /// Its program begins anew, and its ids with it.
   void started_anew(std::size_t client) { writers_.at(client) = {}; }
-  void sent(std::size_t client, const model::Write& write) { writers_.at(client).last = write; }
+  void sent(std::size_t client, const reference::Write& write) { writers_.at(client).last = write; }
 
  private:
   struct Writer {
     std::int64_t id = 0;
-    model::Rows rows{};  ///< targets, as written last
+    reference::Rows rows{};  ///< targets, as written last
     std::int64_t word = 0;
-    model::Write last{};
+    reference::Write last{};
   };
-  [[nodiscard]] model::Write registers(const Step& step);
-  [[nodiscard]] model::Write parameter(const Step& step) const;
+  [[nodiscard]] reference::Write registers(const Step& step);
+  [[nodiscard]] reference::Write parameter(const Step& step) const;
   [[nodiscard]] std::int64_t start_command(const Step& step) const;
   [[nodiscard]] std::int64_t next_word(const Step& step, Writer& writer) const;
 
   Subject subject_;
   Flavour flavour_;
   bool leases_;
-  model::Rows profile_, parameters_;
+  reference::Rows profile_, parameters_;
   std::uint32_t commands_;
-  std::array<Writer, model::kClients> writers_{};
+  std::array<Writer, reference::kClients> writers_{};
 };
 
 }  // namespace axisgate::test::judged

@@ -6,7 +6,7 @@
 
 #include "tests/model/contract.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 // 3.3 Outcomes: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception.
@@ -118,4 +118,4 @@ void Contract::unanswered(int request) {
   keep_different();
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

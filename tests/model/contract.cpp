@@ -7,7 +7,7 @@
 
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 void make_uncertain(Item& item) {
@@ -69,9 +69,9 @@ std::string each_once(const std::vector<World>& worlds, Call&& call) {
 }  // namespace
 
 void ClientMemory::make_uncertain() {
-  model::make_uncertain(command);
-  model::make_uncertain(controlword);
-  for (Item& coil : coils) model::make_uncertain(coil);
+  reference::make_uncertain(command);
+  reference::make_uncertain(controlword);
+  for (Item& coil : coils) reference::make_uncertain(coil);
 }
 
 Motion World::motion() const {
@@ -296,4 +296,4 @@ std::string Contract::expected() const {
   return each_once(worlds_, [](const World& world) { return text(world); });
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -18,7 +18,7 @@
 
 #include "tests/model/write.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 
 inline constexpr std::size_t kModbus = 3, kWriters = 3, kClients = kModbus + kWriters;  ///< DDS writers come last
 [[nodiscard]] constexpr bool is_dds(std::size_t client) { return client >= kModbus; }
@@ -326,4 +326,4 @@ class Contract {
 
 [[nodiscard]] std::string text(const World& world);
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 constexpr std::int64_t kRearmUnsureMs = 150;
@@ -397,4 +397,4 @@ void Judge::tell_foreign(Verdict& verdict) const {
   verdict.says += ", another client owns the axis";
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -7,7 +7,7 @@
 
 #include "tests/model/contract.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 
 /// Answers "which of the two readings?", a different way each time until all ways were tried.
 class Readings {
@@ -125,4 +125,4 @@ class Judge {
   SeenBefore seen_before_ = SeenBefore::no;
 };
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

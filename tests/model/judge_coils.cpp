@@ -3,7 +3,7 @@
 
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 
 // 3.3 Edges, level coils: 0 enable, 3 halt, 7 run_velocity, 8 and 9 jog.
 Judge::Edge Judge::level_edge(std::uint16_t number, std::int64_t value, bool single) {
@@ -159,4 +159,4 @@ Verdict Judge::coils(const Write& write) {
   return verdict;
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -5,7 +5,7 @@
 
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 constexpr std::int64_t kJustBegunMs = 1100;  // over CANopen the end of a move is told up to 1 s late
@@ -346,4 +346,4 @@ void Judge::answer_not_new(std::int64_t number, const Item& item, Verdict& verdi
     verdict = {"not new, target changed: 0x06", same_target || number == 8 ? std::set<int>{0, 6} : std::set<int>{6}};
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

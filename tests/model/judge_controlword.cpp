@@ -2,7 +2,7 @@
 // What controlwords do, and what they are answered with (3.4).
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 
 bool Judge::controlword(std::int64_t value, bool single, Verdict& verdict) {
   verdict = {"acts: controlword " + std::to_string(value), {0}, true};
@@ -76,4 +76,4 @@ bool Judge::controlword(std::int64_t value, bool single, Verdict& verdict) {
   return true;
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -2,7 +2,7 @@
 // What DDS writers ask (design 4): samples of axis_command.
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 
 // Design 4: "Every request gets its one reply"; each sample is new, and what its mask names asks.
 Verdict Judge::sample(const Write& write) {
@@ -76,4 +76,4 @@ void Judge::jog_sample(std::int64_t number, Verdict& verdict) {
   if (readings_.other()) claim();  // whether it asks for anything is not said
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -6,7 +6,7 @@
 #include "tests/model/contract.hpp"
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 constexpr std::int64_t kUnsureMs = 40;  // two clocks that read the same instant
@@ -327,4 +327,4 @@ void Contract::gateway_started() {
   keep_different();
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

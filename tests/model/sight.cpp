@@ -7,7 +7,7 @@
 #include "tests/model/contract.hpp"
 #include "tests/model/judge.hpp"
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 constexpr std::int64_t kEnableMs = 2000;  // from an accepted enable to the torque, at most
@@ -179,4 +179,4 @@ bool Contract::see(const Sight& sight) {
   return true;
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

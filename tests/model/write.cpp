@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 namespace {
 
 constexpr std::array<std::uint16_t, 16> kWide{42, 44, 48, 50, 52, 58, 62, 64, 66, 68, 70, 72, 74, 76, 78, 84};
@@ -97,4 +97,4 @@ std::string text(const Write& write) {
   return out;
 }
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::test::model {
+namespace axisgate::test::reference {
 
 using Rows = boost::container::flat_map<std::uint16_t, std::int64_t>;  ///< offset in the axis's block: value
 
@@ -78,4 +78,4 @@ struct Write {
 [[nodiscard]] Rows rows_of(const Write& write);
 [[nodiscard]] std::string text(const Write& write);
 
-}  // namespace axisgate::test::model
+}  // namespace axisgate::test::reference

@@ -15,7 +15,7 @@
 
 namespace axisgate::test::obey {
 
-using namespace model;  // what a client writes
+using namespace reference;  // what a client writes
 
 struct Answer {
   std::uint8_t exception = 0;          ///< 0: none

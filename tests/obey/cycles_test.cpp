@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tables of cycles of schemas/register-map.md, played as they stand on each drive that has their commands.
-#include "gateway/image/commands_page.hpp"
+#include "gateway/listing/commands_page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,14 +48,14 @@ std::uint16_t offset_of(const std::string& name) {
 
 class Replay {
  public:
-  Replay(const CycleTable& table, Subject subject)
+  Replay(const listing::CycleTable& table, Subject subject)
       : table_(table), plant_(subject, table.leases ? with_leases() : PlantOptions{}) {
     plant_.ready_but_disabled();
   }
 
   void play() {
     int number = 0;
-    for (const Cycle& cycle : table_.cycles) {
+    for (const listing::Cycle& cycle : table_.cycles) {
       SCOPED_TRACE(testing::Message() << table_.title << ", cycle " << ++number << ": " << cycle.client << ' '
                                       << cycle.writes);
       play(cycle);
@@ -64,12 +64,12 @@ class Replay {
   }
 
  private:
-  void play(const Cycle& cycle) {
+  void play(const listing::Cycle& cycle) {
     const bool panel = cycle.client == "panel";
     Client& client = panel ? plant_.b : plant_.a;
     const bool turned = plant_.velocity() != 0;
     const std::vector<Named> writes = named_values(cycle.writes);
-    const bool singles = panel || table_.plc == CycleTable::How::single;
+    const bool singles = panel || table_.plc == listing::CycleTable::How::single;
     if (singles) {
       for (const Named& each : writes) EXPECT_EQ(single(client, each).exception, cycle.exception);
     } else {
@@ -78,7 +78,7 @@ class Replay {
     }
     if (const auto target = image_.find(row::target_position); target != image_.end()) target_ = target->second;
     watch_motor(cycle.motor, turned);
-    if (cycle.result != kAsBefore) {
+    if (cycle.result != listing::kAsBefore) {
       EXPECT_EQ(client.result(), cycle.result) << cycle.why;
     }
     // After a stop the drive is read once more before it counts as standing.
@@ -86,25 +86,25 @@ class Replay {
     EXPECT_EQ(client.word(shown::axis_state), cycle.state) << cycle.why;
   }
 
-  void watch_motor(MotorDoes does, bool turned) {
+  void watch_motor(listing::MotorDoes does, bool turned) {
     switch (does) {
-      case MotorDoes::stands:
+      case listing::MotorDoes::stands:
         EXPECT_FALSE(turned);
         for (int i = 0; i < 10; ++i) {
           pass(50ms);
           EXPECT_EQ(plant_.velocity(), 0);
         }
         return;
-      case MotorDoes::starts:
+      case listing::MotorDoes::starts:
         EXPECT_FALSE(turned);
         EXPECT_TRUE(passes_until([this] { return std::llabs(plant_.velocity()) > kAtSpeed; }, 1s));
         return;
-      case MotorDoes::arrives:
+      case listing::MotorDoes::arrives:
         EXPECT_TRUE(turned);
         EXPECT_TRUE(passes_until([this] { return plant_.stands(); }, 5s));
         EXPECT_NEAR(static_cast<double>(plant_.position()), static_cast<double>(target_), kClose);
         return;
-      case MotorDoes::stops:
+      case listing::MotorDoes::stops:
         EXPECT_TRUE(turned);
         EXPECT_TRUE(passes_until([this] { return plant_.stands(); }, 5s));
         EXPECT_GT(std::llabs(plant_.position() - target_), kClose);
@@ -142,7 +142,7 @@ class Replay {
   }
 
   static constexpr std::int64_t kAtSpeed = 1000;  ///< 0.001 rpm: more than a standing motor shows
-  const CycleTable& table_;
+  const listing::CycleTable& table_;
   Plant plant_;
   Rows image_{{row::command, 0}, {row::command_id, 0}};
   std::int64_t target_ = 0;
@@ -154,16 +154,16 @@ class Cycles : public testing::TestWithParam<Subject> {};
 TEST_P(Cycles, AreWhatTheirTablesSay) {
   // As the table of the one-shot client says, and SECURITY.md.
   const bool ends_with_its_client = !is_cia402(GetParam()) && !minds_silence(GetParam());
-  for (const CycleTable& table : cycle_tables())
+  for (const listing::CycleTable& table : listing::cycle_tables())
     if (!(table.new_connection_each && ends_with_its_client)) Replay(table, GetParam()).play();
 }
 
 // A test of tables that say nothing would pass.
 TEST(CycleTables, MoveAndStopAMotorAndEachIsRefusedOnce) {
-  ASSERT_EQ(cycle_tables().size(), 5U);
-  for (const CycleTable& table : cycle_tables()) {
-    std::set<MotorDoes> seen;
-    for (const Cycle& cycle : table.cycles) seen.insert(cycle.motor);
+  ASSERT_EQ(listing::cycle_tables().size(), 5U);
+  for (const listing::CycleTable& table : listing::cycle_tables()) {
+    std::set<listing::MotorDoes> seen;
+    for (const listing::Cycle& cycle : table.cycles) seen.insert(cycle.motor);
     EXPECT_EQ(seen.size(), 4U) << table.title;
   }
 }

@@ -10,7 +10,7 @@
 namespace axisgate::test::obey {
 namespace {
 
-using namespace model;
+using namespace reference;
 
 constexpr double kPositionUnit = 2 * std::numbers::pi / 10'000;      // rad, of 1/10000 turn
 constexpr std::uint64_t kPlaces = std::uint64_t{1} << 32;            // more than there are request_ids

@@ -24,15 +24,15 @@ class DdsWriters {
 
   /// Sends a sample of axis 1 and returns a number for its reply at once: its request_id, of one that repeats another
   /// more than that.
-  std::uint64_t begin(const model::Write& sample, std::size_t writer = 0);
+  std::uint64_t begin(const reference::Write& sample, std::size_t writer = 0);
   /// What this writer has asked for so many requests ago, 1 or more, to be said once more; flawed ones do not count.
   /// None: it has not asked, or has no reply to it yet.
-  [[nodiscard]] std::optional<model::Write> said(std::size_t writer, std::size_t ago);
+  [[nodiscard]] std::optional<reference::Write> said(std::size_t writer, std::size_t ago);
   /// axisgate-dds dies: nothing is heard of anybody, replies are lost. It comes back, and finds the same writers.
   void process_dies();
   void process_returns();
   /// A sample for another gateway, whose name and key agree. Nobody answers it.
-  void ask_another_gateway(const model::Write& sample, std::size_t writer);
+  void ask_another_gateway(const reference::Write& sample, std::size_t writer);
   /// command_result of its reply; none yet, or never.
   [[nodiscard]] std::optional<std::uint8_t> result_of(std::uint64_t request);
   /// The writer is deleted, or its liveliness is lost, and another one begins.
@@ -49,9 +49,9 @@ class DdsWriters {
     dds::Guid guid{};
     std::int32_t strength = 0;
     std::uint32_t counter = 0;
-    std::vector<std::pair<std::uint64_t, model::Write>> said{};  ///< with their request_ids
+    std::vector<std::pair<std::uint64_t, reference::Write>> said{};  ///< with their request_ids
   };
-  [[nodiscard]] dds::CommandRecord record_of(const model::Write& sample, const Writer& by, std::uint64_t id);
+  [[nodiscard]] dds::CommandRecord record_of(const reference::Write& sample, const Writer& by, std::uint64_t id);
   void tell(const dds::Record& record);
   void read();
   [[nodiscard]] dds::SteadyNs now_ns();

@@ -11,10 +11,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kEnable = 1, kDisable = 2, kNeverStarted = 6;
-constexpr Duration kBoth = 2 * app::kBusReleaseStep;
+constexpr Duration kBoth = 2 * compose::kBusReleaseStep;
 
-void change_timeout(app::Config& config) { config.buses.at(0).timeout += 1ms; }
-void take_out(app::Config& config) { config.buses.clear(); }
+void change_timeout(config::Config& config) { config.buses.at(0).timeout += 1ms; }
+void take_out(config::Config& config) { config.buses.clear(); }
 
 using ReloadEnd = std::shared_ptr<std::optional<GatewayStage::Reasons>>;
 
@@ -23,7 +23,7 @@ GatewayStage::Reasons ended(Plant& plant, const ReloadEnd& told) {
   EXPECT_TRUE(plant.stage.run_until([&] { return told->has_value(); }, kBoth + 10ms));
   return told->value_or(GatewayStage::Reasons{"it never ended"});
 }
-GatewayStage::Reasons reload(Plant& plant, const std::function<void(app::Config&)>& change = change_timeout) {
+GatewayStage::Reasons reload(Plant& plant, const std::function<void(config::Config&)>& change = change_timeout) {
   return ended(plant, plant.stage.begin_reload(change));
 }
 
@@ -193,7 +193,7 @@ TEST_P(Reload, AnEndMeanwhileEndsInTime) {
     plant.run(std::chrono::milliseconds(ms));
     bool closed = false;
     plant.stage.gateway().close([&] { closed = true; });
-    EXPECT_TRUE(plant.stage.run_until([&] { return closed; }, app::kClosing + 1ms)) << ms;
+    EXPECT_TRUE(plant.stage.run_until([&] { return closed; }, compose::kClosing + 1ms)) << ms;
     plant.crash_gateway();
     plant.run(5s);
     EXPECT_FALSE(plant.motor().enabled.value_or(false) && minds_silence(GetParam()) && is_cia402(GetParam())) << ms;
@@ -207,9 +207,9 @@ TEST_P(Reload, AnAxisThatIsTakenOutIsGoneAndComesBackAnew) {
   plant_.run(1s);
   const std::vector<std::uint16_t> before = plant_.a.read(shown::axis_state, 1);
   ASSERT_EQ(before.size(), 1U);
-  app::Config with;
+  config::Config with;
   EXPECT_EQ(reload(plant_,
-                   [&](app::Config& config) {
+                   [&](config::Config& config) {
                      with = config;
                      take_out(config);
                    }),
@@ -217,7 +217,7 @@ TEST_P(Reload, AnAxisThatIsTakenOutIsGoneAndComesBackAnew) {
   EXPECT_EQ(plant_.a.row(row::command, kEnable), kNoSuchRow);
   plant_.run(5s);
   EXPECT_FALSE(plant_.motor().faulted) << "it was told not to miss the gateway";
-  EXPECT_EQ(reload(plant_, [&](app::Config& config) { config = with; }), GatewayStage::Reasons{});
+  EXPECT_EQ(reload(plant_, [&](config::Config& config) { config = with; }), GatewayStage::Reasons{});
   ASSERT_TRUE(plant_.stage.come_online());
   EXPECT_FALSE(plant_.motor().enabled.value_or(false));
   expect_in_command(plant_);
@@ -268,7 +268,7 @@ TEST(ReloadOfTwoBuses, TheOtherBusSeesNotOneRequestMoreOrLess) {
     std::shared_ptr<std::optional<GatewayStage::Reasons>> told;
     for (int ms = 0; ms < 3000; ++ms) {
       if (ms == 500 && what == What::removed)
-        told = stage.begin_reload([](app::Config& config) { config.buses.erase(config.buses.begin()); });
+        told = stage.begin_reload([](config::Config& config) { config.buses.erase(config.buses.begin()); });
       if (ms == 500 && (what == What::changed || what == What::refused)) told = stage.begin_reload(change_timeout);
       if (ms == 400 || ms == 600)
         seen.results.push_back(stage.command(2, ms == 400 ? Command::enable : Command::disable).outcome.code);

@@ -4,7 +4,7 @@
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -59,4 +59,4 @@ TEST(AnyValue, AtAnyPlaceOfAProfileThatExtendsAnotherNeverThrows) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -8,7 +8,7 @@
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::IsEmpty;
@@ -140,4 +140,4 @@ TEST_F(EdsComparison, ObjectsOfOtherProtocolsAreNoneOfItsBusiness) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

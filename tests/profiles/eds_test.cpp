@@ -10,7 +10,7 @@
 #include "tests/places.hpp"
 #include "tests/profiles/mistakes.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::ElementsAre;
@@ -24,7 +24,7 @@ std::string one_object(const std::string& keys, const std::string& section = "60
   return "[" + section + "]\nParameterName=x\n" + keys;
 }
 
-const EdsObject& the_object(const Eds& eds, bus::ObjectAddress address) {
+const EdsObject& the_object(const Eds& eds, ObjectAddress address) {
   static const EdsObject kNone;
   const auto at = eds.objects.find(address);
   if (at == eds.objects.end()) ADD_FAILURE() << "no such object";
@@ -175,4 +175,4 @@ TEST(Eds, EveryBeginningAndEveryDamageOfAFileIsTakenCalmly) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

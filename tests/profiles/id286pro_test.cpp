@@ -7,14 +7,14 @@
 #include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
 
 json vectors(const std::string& part) { return manual("id286pro").at(part); }
 
-DriveModel id286pro(std::int64_t pulses_per_rev = 10000) {
+model::DriveModel id286pro(std::int64_t pulses_per_rev = 10000) {
   ResolveInput input = one_axis("modbus-rtu");
   input.constants["pulses_per_rev"] = Rational(pulses_per_rev);
   return resolved(shipped("id286pro"), input);
@@ -31,9 +31,9 @@ std::optional<Range> range_in(const json& text) {
   return out;
 }
 
-Nvm nvm_of(const json& row) {
+model::Nvm nvm_of(const json& row) {
   const std::string said = row["eeprom"];
-  return said.starts_with("no") ? Nvm::no : said == "unknown" ? Nvm::unknown : Nvm::yes;
+  return said.starts_with("no") ? model::Nvm::no : said == "unknown" ? model::Nvm::unknown : model::Nvm::yes;
 }
 
 TEST(Id286pro, EveryRegisterIsWhereAndAsTheManualSays) {
@@ -63,7 +63,7 @@ TEST(Id286pro, ItsRunsHaveNoHoles) {
   std::set<int> there;
   for (const json& row : vectors("objects"))
     for (int word = 0; word < row["words"].get<int>(); ++word) there.insert(row["address"].get<int>() + word);
-  const DriveModel model = id286pro();
+  const model::DriveModel model = id286pro();
   EXPECT_EQ(model.rtu.runs.size(), 9U);
   for (const auto& [first, last] : model.rtu.runs)
     for (int number = first; number <= last; ++number)
@@ -71,13 +71,13 @@ TEST(Id286pro, ItsRunsHaveNoHoles) {
 }
 
 TEST(Id286pro, ConversionsOfTheManualComeOut) {
-  const DriveModel model = id286pro();
+  const model::DriveModel model = id286pro();
   int checked = 0;
   for (const json& row : vectors("conversions")) {
     const std::string engineering = row["engineering"];
     const auto expect = [&](const std::string& named, Quantity quantity, std::int64_t value) {
       if (engineering != named) return;
-      const Binding& bound = binding(model, quantity);
+      const model::Binding& bound = binding(model, quantity);
       const auto raw = row["raw"].get<std::int64_t>();
       EXPECT_EQ(bound.to_raw(value, model.object(bound.object)), raw) << named;
       EXPECT_EQ(bound.to_register(raw), value) << named;
@@ -97,7 +97,7 @@ TEST(Id286pro, ConversionsOfTheManualComeOut) {
 }
 
 TEST(Id286pro, ARegisterUnitOfSpeedIsFinerThanTheDrives) {
-  const DriveModel model = id286pro();
+  const model::DriveModel model = id286pro();
   EXPECT_EQ(sent(model, Quantity::target_velocity, -300000), -500);
   EXPECT_EQ(sent(model, Quantity::target_velocity, 299), 0) << "0.6 rpm are one of the drive's";
   EXPECT_EQ(binding(model, Quantity::target_velocity).limits, (Range{-3000000, 3000000}));
@@ -106,7 +106,7 @@ TEST(Id286pro, ARegisterUnitOfSpeedIsFinerThanTheDrives) {
 }
 
 TEST(Id286pro, WhatItsManualDoesNotSayIsNotSupported) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   for (const Quantity q :
        {Quantity::torque_actual, Quantity::current_actual, Quantity::following_error, Quantity::drive_temperature,
         Quantity::digital_inputs, Quantity::digital_outputs, Quantity::target_torque, Quantity::homing_speed_switch,
@@ -114,26 +114,26 @@ TEST(Id286pro, WhatItsManualDoesNotSayIsNotSupported) {
     EXPECT_EQ(model.axes[0].binding(q), nullptr) << row(q).name;
   EXPECT_FALSE(model.axes[0].command(Command::run_torque));
   EXPECT_FALSE(model.axes[0].command(Command::save_parameters));
-  EXPECT_NE(model.find({100, 0}), kNoObject) << "the motor current can still be looked at";
+  EXPECT_NE(model.find({100, 0}), model::kNoObject) << "the motor current can still be looked at";
   EXPECT_EQ(model.axes[0].supported_modes, 0x0025) << "1, 3 and 6";
 }
 
 TEST(Id286pro, ItsGateIsTheGatewaysAndAStopLeavesItEnergised) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   const auto& facts = model.axes[0].virtual_axis;
   ASSERT_TRUE(facts);
   EXPECT_TRUE(facts->gate_only);
   EXPECT_TRUE(facts->quick_stop_energised);
   EXPECT_EQ(facts->within, 10);
-  const ObjectDef& state = model.object(facts->enabled.object);
+  const model::ObjectDef& state = model.object(facts->enabled.object);
   EXPECT_FALSE(facts->enabled.holds(state, 1));
   EXPECT_TRUE(facts->enabled.holds(state, 2));
   EXPECT_TRUE(facts->enabled.holds(state, 3));
   ASSERT_TRUE(facts->reached && facts->homed_at && model.axes[0].moving);
   EXPECT_TRUE(facts->reached->holds(state, 2));
   EXPECT_TRUE(model.axes[0].moving->holds(state, 3));
-  const ObjectDef& position = model.object(facts->homed_at->object);
-  EXPECT_EQ(position.address, (bus::ObjectAddress{117, 0}));
+  const model::ObjectDef& position = model.object(facts->homed_at->object);
+  EXPECT_EQ(position.address, (ObjectAddress{117, 0}));
   EXPECT_TRUE(facts->homed_at->holds(position, 0));
   EXPECT_TRUE(facts->homed_at->holds(position, 0xFFFFFFF6)) << "-10";
   EXPECT_FALSE(facts->homed_at->holds(position, 0xFFFFFFF5));
@@ -141,17 +141,18 @@ TEST(Id286pro, ItsGateIsTheGatewaysAndAStopLeavesItEnergised) {
 }
 
 /// What a command writes to register 0323, in its order.
-std::vector<std::int64_t> commanded(const DriveModel& model, Command command) {
+std::vector<std::int64_t> commanded(const model::DriveModel& model, Command command) {
   std::vector<std::int64_t> out;
   const auto& def = model.axes.at(0).command(command);
   if (!def) return {-1};
-  for (const Step& step : def->steps)
-    if (step.verb == Step::Verb::write && model.object(step.object).address.index == 323) out.push_back(step.literal);
+  for (const model::Step& step : def->steps)
+    if (step.verb == model::Step::Verb::write && model.object(step.object).address.index == 323)
+      out.push_back(step.literal);
   return out;
 }
 
 TEST(Id286pro, EachCommandHasItsCodeOfTheManual) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   std::map<std::string, std::int64_t> codes;
   for (const json& row : vectors("commands"))
     if (row["register_0323"] == true) codes[row["name"]] = row["code"].get<std::int64_t>();
@@ -169,11 +170,11 @@ TEST(Id286pro, EachCommandHasItsCodeOfTheManual) {
 }
 
 TEST(Id286pro, StopsWaitUntilTheDriveStands) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   for (const Command command : {Command::halt, Command::disable, Command::quick_stop}) {
-    const Step& last = model.axes[0].command(command)->steps.back();
-    EXPECT_EQ(last.verb, Step::Verb::wait) << axisgate::text(command);
-    const ObjectDef& state = model.object(last.until.object);
+    const model::Step& last = model.axes[0].command(command)->steps.back();
+    EXPECT_EQ(last.verb, model::Step::Verb::wait) << axisgate::text(command);
+    const model::ObjectDef& state = model.object(last.until.object);
     EXPECT_EQ(state.address.index, 109);
     EXPECT_FALSE(last.until.holds(state, 3));
     EXPECT_TRUE(last.until.holds(state, 1)) << "a drive that lost its torque has stopped as well";
@@ -181,13 +182,13 @@ TEST(Id286pro, StopsWaitUntilTheDriveStands) {
 }
 
 TEST(Id286pro, HomingMethodsAreTheDrivesOwnFourAndNeedTheirInput) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   // Modes 2 and 3 look for a limit (functions 9 and 10), 0 and 1 for the origin (11).
   const std::map<std::int64_t, std::pair<std::int64_t, std::int64_t>> modes{
       {17, {3, 10}}, {18, {2, 9}}, {19, {0, 11}}, {21, {1, 11}}};
   EXPECT_EQ(model.axes[0].homing_methods, (std::vector<std::int16_t>{17, 18, 19, 21}));
   ASSERT_EQ(model.axes[0].homing_needs.size(), 4U);
-  for (const HomingNeed& need : model.axes[0].homing_needs) {
+  for (const model::HomingNeed& need : model.axes[0].homing_needs) {
     SCOPED_TRACE(need.method);
     EXPECT_EQ(sent(model, Quantity::homing_method, need.method), modes.at(need.method).first);
     EXPECT_EQ(need.equals, modes.at(need.method).second);
@@ -199,10 +200,10 @@ TEST(Id286pro, HomingMethodsAreTheDrivesOwnFourAndNeedTheirInput) {
 }
 
 TEST(Id286pro, ADriveThatFollowsPulsesIsToldWithItsRemedy) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   ASSERT_EQ(model.checks.size(), 1U);
   EXPECT_EQ(model.checks[0].alarm, AxisAlarm::local_control);
-  const ObjectDef& mode = model.object(model.checks[0].bad.object);
+  const model::ObjectDef& mode = model.object(model.checks[0].bad.object);
   EXPECT_EQ(mode.address.index, 296);
   EXPECT_TRUE(model.checks[0].bad.holds(mode, 0));
   EXPECT_FALSE(model.checks[0].bad.holds(mode, 1));
@@ -211,7 +212,7 @@ TEST(Id286pro, ADriveThatFollowsPulsesIsToldWithItsRemedy) {
 }
 
 TEST(Id286pro, ItsLineIsAsTheManualSays) {
-  const DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
+  const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   EXPECT_TRUE(model.rtu.low_word_first);
   EXPECT_EQ(model.rtu.broadcast, 255);
   EXPECT_EQ(model.rtu.answer, std::chrono::milliseconds(20));
@@ -219,8 +220,8 @@ TEST(Id286pro, ItsLineIsAsTheManualSays) {
   EXPECT_GE(model.resync.worst_reply, model.timeout);
   EXPECT_TRUE(model.resync.by_length);
   EXPECT_FALSE(model.stops_by_itself);
-  EXPECT_EQ(model.nvm, Nvm::yes) << "a register that is not in the table is stored as well, so far as is known";
+  EXPECT_EQ(model.nvm, model::Nvm::yes) << "a register that is not in the table is stored as well, so far as is known";
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

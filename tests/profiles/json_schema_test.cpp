@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -114,4 +114,4 @@ TEST(JsonFile, NumbersAreExactAsWritten) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -10,7 +10,7 @@
 
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive::keya {
+namespace axisgate::profile::keya {
 
 inline constexpr std::array<const char*, 4> kProtocols{"canopen", "keya-can", "keya-rs232", "keya-rs485"};
 inline constexpr std::array<const char*, 3> kFixed{"keya-can", "keya-rs232", "keya-rs485"};
@@ -41,30 +41,30 @@ inline ResolveInput in_mode(const std::string& protocol, std::int64_t mode,
   return input;
 }
 
-inline DriveModel model(const ResolveInput& input) { return resolved(shipped("keya-kydas4860-2e"), input); }
+inline model::DriveModel model(const ResolveInput& input) { return resolved(shipped("keya-kydas4860-2e"), input); }
 
 inline nlohmann::json vectors(const std::string& part) { return manual("keya-kydas4860-2e").at(part); }
 
-inline ObjectId id(const DriveModel& model, const std::string& name) {
-  const auto at =
-      std::find_if(model.objects.begin(), model.objects.end(), [&](const ObjectDef& o) { return o.name == name; });
-  return at == model.objects.end() ? kNoObject : static_cast<ObjectId>(at - model.objects.begin());
+inline model::ObjectId id(const model::DriveModel& model, const std::string& name) {
+  const auto at = std::find_if(model.objects.begin(), model.objects.end(),
+                               [&](const model::ObjectDef& o) { return o.name == name; });
+  return at == model.objects.end() ? model::kNoObject : static_cast<model::ObjectId>(at - model.objects.begin());
 }
 
-inline const ObjectDef& object(const DriveModel& model, const std::string& name) {
-  const ObjectId found = id(model, name);
-  if (found == kNoObject) throw std::runtime_error("no object " + name);
+inline const model::ObjectDef& object(const model::DriveModel& model, const std::string& name) {
+  const model::ObjectId found = id(model, name);
+  if (found == model::kNoObject) throw std::runtime_error("no object " + name);
   return model.object(found);
 }
 
 /// The steps of a command in a mode; "none" where it is not supported.
-inline std::string steps(const DriveModel& model, std::size_t axis, Command command, std::int16_t mode) {
+inline std::string steps(const model::DriveModel& model, std::size_t axis, Command command, std::int16_t mode) {
   const auto& def = model.axes.at(axis).command(command);
   if (!def) return "none";
-  for (const CommandDef::Variant& variant : def->variants)
+  for (const model::CommandDef::Variant& variant : def->variants)
     if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end())
-      return drive::text(model, variant.steps);
-  return def->quick_stop_otherwise ? "quick_stop" : drive::text(model, def->steps);
+      return profile::text(model, variant.steps);
+  return def->quick_stop_otherwise ? "quick_stop" : profile::text(model, def->steps);
 }
 
-}  // namespace axisgate::drive::keya
+}  // namespace axisgate::profile::keya

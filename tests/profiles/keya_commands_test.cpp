@@ -4,7 +4,7 @@
 
 #include "tests/profiles/keya.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::ElementsAre;
@@ -40,7 +40,7 @@ TEST(KeyaCommands, EnableNeverTravelsWithAPositionOfZero) {
 
 TEST(KeyaCommands, OnlyTheSetpointsOfItsOwnModeAreMadeZeroBeforeAnEnable) {
   const auto zeroed = [](const std::string& protocol, std::int64_t mode) {
-    const DriveModel model = keya::model(keya::in_mode(protocol, mode));
+    const model::DriveModel model = keya::model(keya::in_mode(protocol, mode));
     return names(model, model.axes[0].zero_before_enable);
   };
   for (const std::string protocol : keya::kFixed) {
@@ -54,11 +54,11 @@ TEST(KeyaCommands, OnlyTheSetpointsOfItsOwnModeAreMadeZeroBeforeAnEnable) {
 TEST(KeyaCommands, EveryWriteThatMovesTheMotorIsHeldUntilTheStart) {
   for (const std::string protocol : keya::kProtocols)
     for (const std::int64_t mode : {keya::kSpeed, keya::kTorque, keya::kAbsolute})
-      for (const AxisModel& axis : keya::model(keya::in_mode(protocol, mode)).axes)
-        for (const Binding& binding : axis.bindings)
+      for (const model::AxisModel& axis : keya::model(keya::in_mode(protocol, mode)).axes)
+        for (const model::Binding& binding : axis.bindings)
           if (binding.quantity == Quantity::target_velocity || binding.quantity == Quantity::target_torque ||
               binding.quantity == Quantity::target_position) {
-            const DriveModel model = keya::model(keya::in_mode(protocol, mode));
+            const model::DriveModel model = keya::model(keya::in_mode(protocol, mode));
             EXPECT_TRUE(model.object(binding.object).trigger) << protocol;
             EXPECT_FALSE(model.object(binding.object).readable) << protocol;
           }
@@ -80,13 +80,13 @@ TEST(KeyaCommands, AStopSendsNoZeroToAMotorInPositionMode) {
 
 TEST(KeyaCommands, TheStepsOfMotorAAreItsOwn) {
   for (const std::string protocol : keya::kProtocols) {
-    const DriveModel model = keya::model(keya::in_mode(protocol, keya::kSpeed, {"B", "A"}));
+    const model::DriveModel model = keya::model(keya::in_mode(protocol, keya::kSpeed, {"B", "A"}));
     for (const Command command : {Command::enable, Command::disable, Command::quick_stop, Command::halt}) {
       EXPECT_THAT(keya::steps(model, 0, command, 3), Not(HasSubstr("A."))) << protocol;
       EXPECT_THAT(keya::steps(model, 1, command, 3), Not(HasSubstr("B."))) << protocol;
     }
   }
-  const DriveModel canopen = keya::model(keya::in_mode("canopen", keya::kSpeed, {"B", "A"}));
+  const model::DriveModel canopen = keya::model(keya::in_mode("canopen", keya::kSpeed, {"B", "A"}));
   EXPECT_THAT(keya::steps(canopen, 1, Command::enable, 1), HasSubstr("A.command=51191857"));
 }
 
@@ -109,14 +109,14 @@ TEST(KeyaCommands, APositionCanBecomeZeroOnCanopenAloneAndNotWhileItIsHeld) {
 
 TEST(KeyaCommands, MovesAreAbsoluteAndARunIsItsSetpoint) {
   for (const std::string protocol : keya::kProtocols) {
-    const DriveModel position = keya::model(keya::in_mode(protocol, keya::kAbsolute));
+    const model::DriveModel position = keya::model(keya::in_mode(protocol, keya::kAbsolute));
     EXPECT_EQ(keya::steps(position, 0, Command::move_absolute, 1), "A.target_position=target_position") << protocol;
     EXPECT_FALSE(position.axes[0].command(Command::move_relative)) << "no steps: the planner makes it absolute";
     EXPECT_NE(position.axes[0].supported_commands & 1U << static_cast<unsigned>(Command::move_relative), 0U);
-    const DriveModel speed = keya::model(keya::in_mode(protocol, keya::kSpeed));
+    const model::DriveModel speed = keya::model(keya::in_mode(protocol, keya::kSpeed));
     EXPECT_EQ(keya::steps(speed, 0, Command::run_velocity, 3), "") << "nothing but the set-point: " << protocol;
   }
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

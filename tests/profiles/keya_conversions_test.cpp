@@ -8,7 +8,7 @@
 
 #include "tests/profiles/keya.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -61,9 +61,9 @@ TEST(KeyaConversions, OfTheManualComeOutOnEveryProtocolAndBothMotors) {
       const std::optional<Conversion> wanted = conversion_of(row);
       if (!wanted) continue;
       SCOPED_TRACE(protocol + " " + row.dump());
-      const DriveModel model = keya::model(keya::in_mode(protocol, mode_for(wanted->quantity)));
-      for (const AxisModel& axis : model.axes) {
-        const Binding* binding = axis.binding(wanted->quantity);
+      const model::DriveModel model = keya::model(keya::in_mode(protocol, mode_for(wanted->quantity)));
+      for (const model::AxisModel& axis : model.axes) {
+        const model::Binding* binding = axis.binding(wanted->quantity);
         ASSERT_NE(binding, nullptr);
         const std::int64_t raw = row.at("raw");
         EXPECT_EQ(binding->to_register(raw), wanted->value);
@@ -76,7 +76,7 @@ TEST(KeyaConversions, OfTheManualComeOutOnEveryProtocolAndBothMotors) {
 }
 
 TEST(KeyaConversions, CodesOfTheManualAreThoseThatAreSent) {
-  const DriveModel model = keya::model(keya::in_mode("canopen", keya::kTorque));
+  const model::DriveModel model = keya::model(keya::in_mode("canopen", keya::kTorque));
   std::set<std::string> sent;
   for (std::size_t axis = 0; axis < 2; ++axis)
     for (const Command command : {Command::enable, Command::disable}) sent.insert(keya::steps(model, axis, command, 4));
@@ -98,9 +98,9 @@ TEST(KeyaConversions, EachMotorCountsByItsOwnConstants) {
   input.constants["rated_speed_b_rpm"] = Rational(3000);
   input.constants["counts_per_rev_b"] = Rational(20000);
   input.constants["rated_current_b_arms"] = Rational(5);
-  const DriveModel model = keya::model(input);
+  const model::DriveModel model = keya::model(input);
   const auto raw = [&](std::size_t axis, Quantity quantity, std::int64_t value) {
-    const Binding* binding = model.axes[axis].binding(quantity);
+    const model::Binding* binding = model.axes[axis].binding(quantity);
     return binding->to_raw(value, model.object(binding->object));
   };
   EXPECT_EQ(model.axes[0].rated_speed, 1'500'000U);
@@ -118,10 +118,10 @@ TEST(KeyaConversions, WithoutItsCurrentsAMotorHasNoTorque) {
   for (const std::string protocol : keya::kProtocols) {
     ResolveInput input = keya::drive(protocol);
     input.constants["rated_current_b_arms"] = Rational(15);
-    const DriveModel model = keya::model(input);
+    const model::DriveModel model = keya::model(input);
     EXPECT_EQ(model.axes[0].binding(Quantity::torque_actual), nullptr) << protocol;
     EXPECT_NE(model.axes[1].binding(Quantity::torque_actual), nullptr) << protocol;
-    for (const AxisModel& axis : model.axes) {
+    for (const model::AxisModel& axis : model.axes) {
       EXPECT_EQ(axis.binding(Quantity::target_torque), nullptr) << protocol;
       EXPECT_NE(axis.binding(Quantity::current_actual), nullptr) << protocol;
     }
@@ -129,10 +129,10 @@ TEST(KeyaConversions, WithoutItsCurrentsAMotorHasNoTorque) {
 }
 
 TEST(KeyaConversions, ATemperatureBelowZeroIsNoHotMotor) {
-  const DriveModel model = keya::model(keya::drive("keya-rs232"));
-  const Binding* temperature = model.axes[0].binding(Quantity::motor_temperature);
+  const model::DriveModel model = keya::model(keya::drive("keya-rs232"));
+  const model::Binding* temperature = model.axes[0].binding(Quantity::motor_temperature);
   EXPECT_EQ(temperature->to_register(model.object(temperature->object).number(0xE4)), -280);
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

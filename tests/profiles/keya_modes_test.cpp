@@ -6,7 +6,7 @@
 #include "gateway/model/loss.hpp"
 #include "tests/profiles/keya.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using std::chrono::milliseconds;
@@ -17,7 +17,7 @@ using testing::Pair;
 
 const std::vector<std::vector<std::string>> kAxes{{"A"}, {"A", "B"}, {"B"}, {"B", "A"}, {""}, {"", ""}};
 
-std::vector<Command> motions(const AxisModel& axis) {
+std::vector<Command> motions(const model::AxisModel& axis) {
   std::vector<Command> out;
   for (const Command command : {Command::move_absolute, Command::move_relative, Command::run_velocity,
                                 Command::run_torque, Command::home, Command::set_position})
@@ -25,7 +25,7 @@ std::vector<Command> motions(const AxisModel& axis) {
   return out;
 }
 
-std::vector<Quantity> targets(const AxisModel& axis) {
+std::vector<Quantity> targets(const model::AxisModel& axis) {
   std::vector<Quantity> out;
   for (const Quantity quantity : {Quantity::target_position, Quantity::target_velocity, Quantity::target_torque})
     if (axis.binding(quantity) != nullptr) out.push_back(quantity);
@@ -42,17 +42,17 @@ TEST(KeyaModes, ResolvesOnEveryProtocolForEveryChoiceOfMotors) {
   for (const std::string protocol : keya::kProtocols) {
     for (const auto& motors : kAxes) {
       SCOPED_TRACE(protocol + " " + std::to_string(motors.size()) + " " + motors[0]);
-      const DriveModel model = keya::model(keya::drive(protocol, motors));
+      const model::DriveModel model = keya::model(keya::drive(protocol, motors));
       ASSERT_EQ(model.axes.size(), motors.size());
       for (std::size_t i = 0; i < motors.size(); ++i) {
         const std::string motor = motors[i].empty() ? std::string(1, "AB"[i]) : motors[i];
-        const AxisModel& axis = model.axes[i];
+        const model::AxisModel& axis = model.axes[i];
         EXPECT_EQ(model.object(axis.statusword).name, motor + ".statusword");
         EXPECT_EQ(model.object(axis.virtual_axis->fault.object).name, motor + ".fault");
         EXPECT_EQ(model.object(axis.fault_words[0]).name, motor + ".fault");
         EXPECT_EQ(model.object(axis.moving->object).name, motor + ".speed");
         EXPECT_EQ(model.object(axis.binding(Quantity::position_actual)->object).name, motor + ".position");
-        for (const ObjectDef& object : model.objects)
+        for (const model::ObjectDef& object : model.objects)
           if (object.name.starts_with(motor + ".")) {
             EXPECT_EQ(object.slot, i) << object.name;
           }
@@ -65,11 +65,11 @@ TEST(KeyaModes, ResolvesOnEveryProtocolForEveryChoiceOfMotors) {
 
 TEST(KeyaModes, AMotorThatIsNoAxisIsLeftOutButForTheControlFrame) {
   for (const std::string protocol : keya::kProtocols) {
-    const DriveModel model = keya::model(keya::drive(protocol, {"B"}));
+    const model::DriveModel model = keya::model(keya::drive(protocol, {"B"}));
     std::vector<std::string> others;
-    for (const ObjectDef& object : model.objects) {
+    for (const model::ObjectDef& object : model.objects) {
       if (!object.name.starts_with("A.")) continue;
-      EXPECT_EQ(object.slot, bus::kNoAxis) << object.name;
+      EXPECT_EQ(object.slot, kNoAxis) << object.name;
       EXPECT_TRUE(object.composed) << object.name;
       others.push_back(object.name);
     }
@@ -77,7 +77,7 @@ TEST(KeyaModes, AMotorThatIsNoAxisIsLeftOutButForTheControlFrame) {
     EXPECT_EQ(model.composed.size(), others.empty() ? 0U : 4U) << protocol;
     EXPECT_THAT(model.checks, IsEmpty()) << "motor B's mode is nowhere to be seen";
   }
-  const CanopenProperties facts = keya::model(keya::drive("canopen", {"B"})).canopen;
+  const model::CanopenProperties facts = keya::model(keya::drive("canopen", {"B"})).canopen;
   ASSERT_EQ(facts.tpdos.size(), 2U);
   EXPECT_EQ(facts.tpdos[1].map.size(), 3U) << "without the faults of motor A";
   EXPECT_THAT(facts.unused_tpdos, ElementsAre(1));
@@ -99,7 +99,7 @@ TEST(KeyaModes, OnItsOwnProtocolsAMotorHasTheModeOfTheMakersToolAndNoOther) {
   for (const std::string protocol : keya::kFixed) {
     ResolveInput input = keya::in_mode(protocol, keya::kSpeed);
     input.constants["control_mode_b"] = Rational(keya::kAbsolute);
-    const DriveModel model = keya::model(input);
+    const model::DriveModel model = keya::model(input);
     EXPECT_THAT(model.axes[0].modes, ElementsAre(Pair(3, 3)));
     EXPECT_THAT(motions(model.axes[0]), ElementsAre(Command::run_velocity));
     EXPECT_THAT(targets(model.axes[0]), ElementsAre(Quantity::target_velocity));
@@ -107,7 +107,7 @@ TEST(KeyaModes, OnItsOwnProtocolsAMotorHasTheModeOfTheMakersToolAndNoOther) {
     EXPECT_THAT(model.axes[1].modes, ElementsAre(Pair(1, 1)));
     EXPECT_THAT(motions(model.axes[1]), ElementsAre(Command::move_absolute, Command::move_relative));
     EXPECT_THAT(targets(model.axes[1]), ElementsAre(Quantity::target_position));
-    const AxisModel torque = keya::model(keya::in_mode(protocol, keya::kTorque)).axes[0];
+    const model::AxisModel torque = keya::model(keya::in_mode(protocol, keya::kTorque)).axes[0];
     EXPECT_THAT(torque.modes, ElementsAre(Pair(4, 4)));
     EXPECT_THAT(targets(torque), ElementsAre(Quantity::target_torque));
     EXPECT_THAT(motions(torque), IsEmpty()) << "run_torque needs a speed limit that the drive is known to hold";
@@ -115,13 +115,13 @@ TEST(KeyaModes, OnItsOwnProtocolsAMotorHasTheModeOfTheMakersToolAndNoOther) {
 }
 
 TEST(KeyaModes, OnCanopenTheEnableChoosesSpeedOrPositionAndTorqueMustBeConfigured) {
-  const AxisModel speed = keya::model(keya::in_mode("canopen", keya::kSpeed)).axes[0];
+  const model::AxisModel speed = keya::model(keya::in_mode("canopen", keya::kSpeed)).axes[0];
   EXPECT_THAT(speed.modes, ElementsAre(Pair(3, 3), Pair(1, 1))) << "what it was set to is what it begins with";
   EXPECT_TRUE(speed.mode_needs_disabled);
   EXPECT_THAT(motions(speed), ElementsAre(Command::move_absolute, Command::move_relative, Command::run_velocity,
                                           Command::set_position));
   EXPECT_THAT(targets(speed), ElementsAre(Quantity::target_position, Quantity::target_velocity));
-  const AxisModel torque = keya::model(keya::in_mode("canopen", keya::kTorque)).axes[1];
+  const model::AxisModel torque = keya::model(keya::in_mode("canopen", keya::kTorque)).axes[1];
   EXPECT_THAT(torque.modes, ElementsAre(Pair(4, 4), Pair(1, 1), Pair(3, 3)));
   EXPECT_FALSE(resolved(shipped("kinco-jd"), kinco_axis()).axes[0].mode_needs_disabled);
 }
@@ -146,18 +146,18 @@ TEST(KeyaModes, TorqueModeWithoutItsCurrentsIsRefusedAndNamesThem) {
 
 TEST(KeyaModes, AnotherModeThanTheConfiguredOneIsAnotherDrive) {
   for (const std::string protocol : keya::kFixed) {
-    const DriveModel model = keya::model(keya::in_mode(protocol, keya::kAbsolute));
+    const model::DriveModel model = keya::model(keya::in_mode(protocol, keya::kAbsolute));
     ASSERT_EQ(model.checks.size(), 1U);
-    const Check& check = model.checks[0];
+    const model::Check& check = model.checks[0];
     EXPECT_EQ(check.alarm, AxisAlarm::identity_mismatch);
     EXPECT_EQ(check.slot, 0);
-    const ObjectDef& shown = model.object(check.bad.object);
+    const model::ObjectDef& shown = model.object(check.bad.object);
     EXPECT_FALSE(check.bad.holds(shown, 0x30));
     EXPECT_FALSE(check.bad.holds(shown, 0x35)) << "the low four bits say nothing";
     EXPECT_TRUE(check.bad.holds(shown, 0x10));
     EXPECT_TRUE(check.bad.holds(shown, 0x40));
   }
-  const DriveModel second = keya::model(keya::drive("keya-rs485", {"B", "A"}));
+  const model::DriveModel second = keya::model(keya::drive("keya-rs485", {"B", "A"}));
   ASSERT_EQ(second.checks.size(), 1U);
   EXPECT_EQ(second.checks[0].slot, 1);
   EXPECT_THAT(keya::model(keya::drive("canopen")).checks, IsEmpty()) << "203Ah has no known layout";
@@ -170,11 +170,11 @@ TEST(KeyaModes, TheSetpointOfTheModeIsRepeatedWhereAWatchdogWaits) {
                                        {keya::kTorque, {4, "B.target_torque"}},
                                        {keya::kAbsolute, {1, "B.target_position"}}}) {
       SCOPED_TRACE(protocol + " " + object.second);
-      const DriveModel model = keya::model(keya::in_mode(protocol, mode));
+      const model::DriveModel model = keya::model(keya::in_mode(protocol, mode));
       EXPECT_EQ(model.keep_alive, watched ? milliseconds(300) : Duration{});
       EXPECT_EQ(model.stops_by_itself, watched);
       const std::uint16_t told = protocol == "canopen" ? kLossNotKnown : 1000;
-      EXPECT_EQ(loss_stop_ms(model, {}), watched ? told : kGoesOn) << "nothing is written to it for that";
+      EXPECT_EQ(model::loss_stop_ms(model, {}), watched ? told : kGoesOn) << "nothing is written to it for that";
       const auto& rows = model.axes[1].keep_alive;
       const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.first == object.first; });
       ASSERT_EQ(row != rows.end(), watched);
@@ -184,22 +184,22 @@ TEST(KeyaModes, TheSetpointOfTheModeIsRepeatedWhereAWatchdogWaits) {
       EXPECT_EQ(rows.size(), watched ? model.axes[1].modes.size() : 0U);
     }
   }
-  const DriveModel kinco = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel kinco = resolved(shipped("kinco-jd"), kinco_axis());
   EXPECT_EQ(kinco.keep_alive, Duration{});
   EXPECT_THAT(kinco.axes[0].keep_alive, IsEmpty());
 }
 
 TEST(KeyaModes, OneQueryAnswersForBothMotorsInOnePollClass) {
   for (const std::string protocol : keya::kProtocols) {
-    const DriveModel model = keya::model(keya::in_mode(protocol, keya::kSpeed));
-    std::map<std::pair<int, int>, PollClass> classes;
-    for (const AxisModel& axis : model.axes) {
-      EXPECT_EQ(axis.binding(Quantity::velocity_actual)->poll, PollClass::fast);
-      EXPECT_EQ(axis.binding(Quantity::position_actual)->poll, PollClass::fast);
-      EXPECT_EQ(axis.binding(Quantity::motor_temperature)->poll, PollClass::slow);
-      for (const Binding& binding : axis.bindings) {
-        if (binding.object == kNoObject || model.object(binding.object).emulated) continue;
-        const bus::ObjectAddress at = model.object(binding.object).address;
+    const model::DriveModel model = keya::model(keya::in_mode(protocol, keya::kSpeed));
+    std::map<std::pair<int, int>, model::PollClass> classes;
+    for (const model::AxisModel& axis : model.axes) {
+      EXPECT_EQ(axis.binding(Quantity::velocity_actual)->poll, model::PollClass::fast);
+      EXPECT_EQ(axis.binding(Quantity::position_actual)->poll, model::PollClass::fast);
+      EXPECT_EQ(axis.binding(Quantity::motor_temperature)->poll, model::PollClass::slow);
+      for (const model::Binding& binding : axis.bindings) {
+        if (binding.object == model::kNoObject || model.object(binding.object).emulated) continue;
+        const ObjectAddress at = model.object(binding.object).address;
         if (binding.quantity == Quantity::torque_actual) continue;  // the same object as current_actual
         EXPECT_EQ(classes.emplace(std::pair(at.index, at.sub), binding.poll).first->second, binding.poll)
             << row(binding.quantity).name;
@@ -209,4 +209,4 @@ TEST(KeyaModes, OneQueryAnswersForBothMotorsInOnePollClass) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -7,7 +7,7 @@
 #include "tests/profiles/keya.hpp"
 #include "tests/profiles/mistakes.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -21,7 +21,7 @@ std::vector<std::uint8_t> bytes_of(const std::string& hex) {
 }
 
 /// What an adapter makes of an answer: the number of this object, from the data of the frame.
-std::int64_t number_in(const ObjectDef& object, const std::vector<std::uint8_t>& data) {
+std::int64_t number_in(const model::ObjectDef& object, const std::vector<std::uint8_t>& data) {
   std::uint32_t raw = 0;
   for (std::size_t i = 0; i < object.size; ++i) raw = raw << 8 | data.at(object.address.byte + i);
   return object.number(raw);
@@ -77,11 +77,11 @@ TEST(Keya, EveryAnswerTheManualPrintsIsReadAsItSays) {
     const std::optional<Answer> answer = answer_in(vector);
     if (!answer) continue;
     SCOPED_TRACE(vector.at("id").get<std::string>());
-    const DriveModel model = keya::model(keya::drive(vector.at("protocol")));
+    const model::DriveModel model = keya::model(keya::drive(vector.at("protocol")));
     for (const auto& [name, value] : vector.at("decoded").items()) {
       const auto known = called().find(name);
       if (known == called().end() || !value.is_number_integer()) continue;
-      const ObjectDef& object = keya::object(model, known->second);
+      const model::ObjectDef& object = keya::object(model, known->second);
       EXPECT_EQ(object.address.index, answer->index) << name;
       EXPECT_EQ(object.address.sub, answer->sub) << name;
       EXPECT_EQ(number_in(object, answer->data), value.get<std::int64_t>()) << name;
@@ -93,15 +93,15 @@ TEST(Keya, EveryAnswerTheManualPrintsIsReadAsItSays) {
   EXPECT_GE(checked["keya-rs485"], 13);
 }
 
-std::set<bus::ObjectAddress> places(const DriveModel& model) {
-  std::set<bus::ObjectAddress> out;
-  for (const ObjectDef& object : model.objects)
+std::set<ObjectAddress> places(const model::DriveModel& model) {
+  std::set<ObjectAddress> out;
+  for (const model::ObjectDef& object : model.objects)
     if (!object.emulated) out.insert(object.address);
   return out;
 }
 
 TEST(Keya, EveryCommandAndQueryOfItsOwnCanProtocolIsThere) {
-  const DriveModel model = keya::model(keya::drive("keya-can"));
+  const model::DriveModel model = keya::model(keya::drive("keya-can"));
   int commands = 0, queries = 0;
   for (const json& row : keya::vectors("objects")) {
     const std::string group = row.at("group");
@@ -110,7 +110,7 @@ TEST(Keya, EveryCommandAndQueryOfItsOwnCanProtocolIsThere) {
     const auto index = static_cast<std::uint16_t>(std::stoul(row.at("index").get<std::string>(), nullptr, 16));
     const auto sub = row.at("sub").get<std::uint8_t>();
     int found = 0;
-    for (const ObjectDef& object : model.objects) {
+    for (const model::ObjectDef& object : model.objects) {
       if (object.emulated || object.address.index != index || object.address.sub != sub) continue;
       ++found;
       const bool command = group == "keya-can command";
@@ -127,9 +127,9 @@ TEST(Keya, EveryCommandAndQueryOfItsOwnCanProtocolIsThere) {
   }
   EXPECT_EQ(commands, 10);
   EXPECT_EQ(queries, 7);
-  EXPECT_EQ(keya::object(model, "voltage").address, (bus::ObjectAddress{0x210D, 2, 3})) << "the last of four bytes";
-  EXPECT_EQ(keya::object(model, "A.motor_temperature").address, (bus::ObjectAddress{0x210F, 1, 2}));
-  EXPECT_EQ(keya::object(model, "B.motor_temperature").address, (bus::ObjectAddress{0x210F, 1, 3}));
+  EXPECT_EQ(keya::object(model, "voltage").address, (ObjectAddress{0x210D, 2, 3})) << "the last of four bytes";
+  EXPECT_EQ(keya::object(model, "A.motor_temperature").address, (ObjectAddress{0x210F, 1, 2}));
+  EXPECT_EQ(keya::object(model, "B.motor_temperature").address, (ObjectAddress{0x210F, 1, 3}));
 }
 
 TEST(Keya, EveryQueryWhoseAnswerIsDocumentedIsAskedOnTheSerialProtocols) {
@@ -152,18 +152,18 @@ TEST(Keya, EveryQueryWhoseAnswerIsDocumentedIsAskedOnTheSerialProtocols) {
 
 TEST(Keya, TheControlFrameIsListedInItsOrderAndWrittenOnly) {
   for (const std::string protocol : {"keya-rs232", "keya-rs485"}) {
-    const DriveModel model = keya::model(keya::drive(protocol));
-    const std::vector<bus::ObjectAddress> order{{0x200D, 1, 0}, {0x200D, 2, 0}, {0x2000, 1, 0}, {0x2000, 2, 0}};
+    const model::DriveModel model = keya::model(keya::drive(protocol));
+    const std::vector<ObjectAddress> order{{0x200D, 1, 0}, {0x200D, 2, 0}, {0x2000, 1, 0}, {0x2000, 2, 0}};
     ASSERT_EQ(model.composed.size(), order.size()) << protocol;
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const ObjectDef& object = model.object(model.composed[i]);
+      const model::ObjectDef& object = model.object(model.composed[i]);
       EXPECT_EQ(object.address, order[i]) << object.name;
       EXPECT_EQ(object.size, i < 2 ? 1 : 4);
       EXPECT_EQ(object.is_signed, i >= 2);
       EXPECT_EQ(object.turns_on, i < 2);
       EXPECT_EQ(object.slot, i % 2);
     }
-    for (const ObjectDef& object : model.objects) {
+    for (const model::ObjectDef& object : model.objects) {
       EXPECT_EQ(object.composed, !object.emulated && object.writable) << object.name;
       if (object.composed) {
         EXPECT_FALSE(object.readable) << object.name;
@@ -175,27 +175,27 @@ TEST(Keya, TheControlFrameIsListedInItsOrderAndWrittenOnly) {
 }
 
 TEST(Keya, NamesOfOnePlaceKnowEachOther) {
-  const auto aliases = [](const DriveModel& model, const std::string& name) {
+  const auto aliases = [](const model::DriveModel& model, const std::string& name) {
     return names(model, keya::object(model, name).aliases);
   };
   for (const std::string protocol : {"canopen", "keya-rs232", "keya-rs485"}) {
-    const DriveModel model = keya::model(keya::drive(protocol));
+    const model::DriveModel model = keya::model(keya::drive(protocol));
     EXPECT_THAT(aliases(model, "A.target_velocity"),
                 testing::UnorderedElementsAre("A.target_position", "A.target_torque"));
     EXPECT_THAT(aliases(model, "B.target_position"),
                 testing::UnorderedElementsAre("B.target_velocity", "B.target_torque"));
   }
-  const DriveModel can = keya::model(keya::drive("keya-can"));
-  for (const ObjectDef& object : can.objects) EXPECT_THAT(object.aliases, IsEmpty()) << object.name;
+  const model::DriveModel can = keya::model(keya::drive("keya-can"));
+  for (const model::ObjectDef& object : can.objects) EXPECT_THAT(object.aliases, IsEmpty()) << object.name;
 }
 
 TEST(Keya, TheObjectsOfItsCanopenDictionaryAreAsPrinted) {
-  const DriveModel model = keya::model(keya::drive("canopen"));
+  const model::DriveModel model = keya::model(keya::drive("canopen"));
   std::map<std::pair<int, int>, json> printed;
   for (const json& row : keya::vectors("objects"))
     if (row.at("group") == "canopen")
       printed[{std::stoi(row.at("index").get<std::string>(), nullptr, 16), row.at("sub").get<int>()}] = row;
-  for (const ObjectDef& object : model.objects) {
+  for (const model::ObjectDef& object : model.objects) {
     if (object.emulated) continue;
     SCOPED_TRACE(object.name);
     const auto row = printed.find({object.address.index, object.address.sub});
@@ -214,19 +214,19 @@ TEST(Keya, TheObjectsOfItsCanopenDictionaryAreAsPrinted) {
 }
 
 TEST(Keya, MapsTheTpdosTheDriveHasByItself) {
-  const DriveModel model = keya::model(keya::drive("canopen"));
-  const CanopenProperties& facts = model.canopen;
+  const model::DriveModel model = keya::model(keya::drive("canopen"));
+  const model::CanopenProperties& facts = model.canopen;
   ASSERT_EQ(facts.tpdos.size(), 3U);
   std::map<std::pair<int, int>, std::string> defaults;
   for (const json& row : keya::vectors("objects"))
     if (row.at("group") == "canopen" && row.contains("default") && row["default"].is_string())
       defaults[{std::stoi(row.at("index").get<std::string>(), nullptr, 16), row.at("sub").get<int>()}] = row["default"];
-  for (const TpdoProperties& tpdo : facts.tpdos) {
+  for (const model::TpdoProperties& tpdo : facts.tpdos) {
     EXPECT_EQ(tpdo.type, 255);
     EXPECT_EQ(tpdo.event_ms, 100);
     EXPECT_EQ(tpdo.inhibit, 20) << "in steps of 1 ms";
     for (std::size_t i = 0; i < tpdo.map.size(); ++i) {
-      const ObjectDef& object = model.object(tpdo.map[i]);
+      const model::ObjectDef& object = model.object(tpdo.map[i]);
       const std::uint32_t entry = std::uint32_t{object.address.index} << 16 | object.size * 8U;
       EXPECT_EQ(std::stoul((defaults[{0x1A00 + tpdo.number - 1, static_cast<int>(i) + 1}]), nullptr, 16), entry);
     }
@@ -238,11 +238,11 @@ TEST(Keya, MapsTheTpdosTheDriveHasByItself) {
 }
 
 TEST(Keya, WhatComesUnaskedIsNeverAskedFor) {
-  const DriveModel model = keya::model(keya::drive("keya-can"));
+  const model::DriveModel model = keya::model(keya::drive("keya-can"));
   EXPECT_EQ(model.unsolicited.every, std::chrono::seconds(1));
   EXPECT_THAT(names(model, model.unsolicited.objects), testing::UnorderedElementsAre("A.work_mode", "interface"));
-  EXPECT_EQ(keya::object(model, "A.work_mode").address, (bus::ObjectAddress{0x7000, 0, 7}));
-  for (const ObjectId object : model.unsolicited.objects) EXPECT_FALSE(model.object(object).readable);
+  EXPECT_EQ(keya::object(model, "A.work_mode").address, (ObjectAddress{0x7000, 0, 7}));
+  for (const model::ObjectId object : model.unsolicited.objects) EXPECT_FALSE(model.object(object).readable);
   for (const std::string protocol : {"canopen", "keya-rs232", "keya-rs485"})
     EXPECT_THAT(keya::model(keya::drive(protocol)).unsolicited.objects, IsEmpty());
 }
@@ -256,11 +256,11 @@ TEST(Keya, WhatComesUnaskedAloneIsNoQuantity) {
 }
 
 TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {
-  const DriveModel model = keya::model(keya::drive("keya-can"));
-  const VirtualProperties& facts = *model.axes[0].virtual_axis;
-  const ObjectDef& word = keya::object(model, "A.fault");
-  std::map<int, AlarmRow> rows;
-  for (const AlarmRow& row : model.alarms) rows[row.bit] = row;
+  const model::DriveModel model = keya::model(keya::drive("keya-can"));
+  const model::VirtualProperties& facts = *model.axes[0].virtual_axis;
+  const model::ObjectDef& word = keya::object(model, "A.fault");
+  std::map<int, model::AlarmRow> rows;
+  for (const model::AlarmRow& row : model.alarms) rows[row.bit] = row;
   for (const json& row : keya::vectors("alarms")) {
     const int bit = row.at("bit");
     SCOPED_TRACE(bit);
@@ -276,7 +276,7 @@ TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {
   }
   EXPECT_FALSE(facts.enabled.holds(word, 1));
   EXPECT_TRUE(facts.enabled.holds(word, 0x0810));
-  const Binding& vendor = *model.axes[1].binding(Quantity::vendor_error);
+  const model::Binding& vendor = *model.axes[1].binding(Quantity::vendor_error);
   ASSERT_EQ(vendor.bits.size(), 1U);
   EXPECT_EQ(model.object(vendor.bits[0].object).name, "B.fault");
   EXPECT_EQ(vendor.bits[0].from, 1) << "bit 0 says that the motor is disabled";
@@ -287,9 +287,9 @@ TEST(Keya, ItsFaultsHaveTheManualsRemediesAndDisabledIsNone) {
 TEST(Keya, AResynchronisationIsReadsThatNoOtherAnswers) {
   for (const std::string protocol : keya::kProtocols)
     for (const std::vector<std::string>& motors : {std::vector<std::string>{"A", "B"}, {"B"}}) {
-      const DriveModel model = keya::model(keya::drive(protocol, motors));
+      const model::DriveModel model = keya::model(keya::drive(protocol, motors));
       std::set<std::pair<int, int>> asked;
-      for (const ResyncRead& read : model.resync.candidates) {
+      for (const model::ResyncRead& read : model.resync.candidates) {
         EXPECT_TRUE(model.object(read.object).readable) << protocol;
         asked.insert({model.object(read.object).address.index, model.object(read.object).address.sub});
       }
@@ -298,4 +298,4 @@ TEST(Keya, AResynchronisationIsReadsThatNoOtherAnswers) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -5,14 +5,14 @@
 
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
 
 json conversions(const std::string& drive) { return manual(drive)["conversions"]; }
 
-DriveModel with(const std::string& drive, std::int64_t counts, const std::string& peak) {
+model::DriveModel with(const std::string& drive, std::int64_t counts, const std::string& peak) {
   ResolveInput input = one_axis();
   input.constants["encoder_counts_per_rev"] = Rational(counts);
   input.constants["peak_current_a"] = *Rational::parse(peak);
@@ -35,7 +35,7 @@ TEST(KincoConversions, EverySpeedAndAccelerationOfTheManualsComesOutRounded) {
       const std::string text = row["engineering"];
       if (!std::regex_match(text, found, form)) continue;
       SCOPED_TRACE(drive + ": " + text);
-      const DriveModel model = with(drive, std::stoll(found[3]), "36");
+      const model::DriveModel model = with(drive, std::stoll(found[3]), "36");
       const bool speed = found[2] == "rpm";
       const Quantity quantity = speed ? Quantity::homing_speed_switch : Quantity::profile_acceleration;
       const std::int64_t value = in_units(found[1], speed ? 1000 : 600);
@@ -52,7 +52,7 @@ TEST(KincoConversions, EverySpeedAndAccelerationOfTheManualsComesOutRounded) {
 
 TEST(KincoConversions, TheMdManualsRoundedSpeedsComeOutToTheDigit) {
   static const std::regex form(R"((-?[0-9]+) rpm, resolution 65536)");
-  const DriveModel model = with("kinco-md", 65536, "36");
+  const model::DriveModel model = with("kinco-md", 65536, "36");
   int checked = 0;
   for (const json& row : conversions("kinco-md")) {
     std::smatch found;
@@ -79,8 +79,8 @@ TEST(KincoConversions, CurrentsOfBothManualsComeOut) {
       const std::string text = row["engineering"];
       const bool peak = std::regex_match(text, found, jd);
       if (!peak && !std::regex_match(text, found, md)) continue;
-      const DriveModel model = with(drive, 10000, peak ? std::string("27.5") : found[2].str());
-      const Binding& current = binding(model, Quantity::current_actual);
+      const model::DriveModel model = with(drive, 10000, peak ? std::string("27.5") : found[2].str());
+      const model::Binding& current = binding(model, Quantity::current_actual);
       // Ap = 1.414 * Arms; registers count 0.01 A rms.
       const double registers = std::stod(found[1]) / (peak ? 1.414 : 1.0) * 100;
       EXPECT_NEAR(registers * current.raw_per_unit.to_double(),
@@ -96,4 +96,4 @@ TEST(KincoConversions, CurrentsOfBothManualsComeOut) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,14 +4,14 @@
 
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
 
 /// The manual's row of each index and sub-index.
-std::map<bus::ObjectAddress, json> rows_of(const std::string& drive) {
-  std::map<bus::ObjectAddress, json> out;
+std::map<ObjectAddress, json> rows_of(const std::string& drive) {
+  std::map<ObjectAddress, json> out;
   const json objects = manual(drive)["objects"];
   for (const json& row : objects) {
     if (row["sub"].is_null()) continue;
@@ -35,8 +35,8 @@ void check_register(const Object& object, const json& row) {
 }
 
 /// Communication objects of which the JD's manual prints the index alone: sub-index and width are CiA 301's.
-bool only_named(const bus::ObjectAddress& address) {
-  return address == bus::ObjectAddress{0x1016, 1} || address == bus::ObjectAddress{0x1017, 0};
+bool only_named(const ObjectAddress& address) {
+  return address == ObjectAddress{0x1016, 1} || address == ObjectAddress{0x1017, 0};
 }
 
 void check_profile(const std::string& drive, std::size_t at_least) {
@@ -62,15 +62,15 @@ TEST(KincoJd, EveryObjectIsWhereAndAsTheManualSays) { check_profile("kinco-jd", 
 TEST(KincoMd, EveryObjectIsWhereAndAsTheManualSays) { check_profile("kinco-md", 35); }
 
 TEST(KincoJd, EachBitOfTheFirstFaultWordHasItsCode) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   EXPECT_EQ(model.alarms.size(), 16U);
-  for (const AlarmRow& row : model.alarms) EXPECT_NE(row.code, 0) << row.text;
+  for (const model::AlarmRow& row : model.alarms) EXPECT_NE(row.code, 0) << row.text;
   EXPECT_EQ(model.alarms.back().bit, 0) << "the vaguest fault speaks last";
 }
 
 TEST(Kinco, WhatItsMakerDoesBesideCia402IsInItsProfile) {
   for (const char* drive : {"kinco-jd", "kinco-md"}) {
-    const AxisModel axis = resolved(shipped(drive), kinco_axis()).axes[0];
+    const model::AxisModel axis = resolved(shipped(drive), kinco_axis()).axes[0];
     EXPECT_EQ(axis.cia402.velocity_modes, std::vector<std::int16_t>{-3}) << drive;
     EXPECT_EQ(axis.cia402.follow_bits, 0xF800) << drive;
     EXPECT_EQ(axis.velocity_lag, std::chrono::milliseconds(300)) << drive;
@@ -78,11 +78,11 @@ TEST(Kinco, WhatItsMakerDoesBesideCia402IsInItsProfile) {
 }
 
 TEST(KincoMd, TheSecondFaultWordSpeaksBeforeTheBitThatPointsToIt) {
-  const DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
   EXPECT_EQ(model.alarms.size(), 27U);
   EXPECT_EQ(model.alarms.back().word, 0);
   EXPECT_EQ(model.alarms.back().bit, 0);
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

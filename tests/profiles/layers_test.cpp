@@ -6,7 +6,7 @@
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,7 +120,7 @@ TEST_F(Layers, ABaseThatIsNoDriveIsOnlyExtended) {
 TEST_F(Layers, WithoutAHaltQuickStopTakesItsPlace) {
   json own = minimal();
   own["commands"].erase("halt");
-  const DriveModel model = resolved(load_profile(write("minimal.json", own)), one_axis());
+  const model::DriveModel model = resolved(load_profile(write("minimal.json", own)), one_axis());
   ASSERT_EQ(model.axes.size(), 1U);
   EXPECT_NE(model.axes[0].supported_commands & 1U << static_cast<unsigned>(Command::halt), 0U);
   ASSERT_TRUE(model.axes[0].command(Command::halt));
@@ -217,4 +217,4 @@ TEST_F(Layers, APlaceIsFoundWhereItWasWritten) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

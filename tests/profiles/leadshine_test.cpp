@@ -13,7 +13,7 @@
 #include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -23,10 +23,12 @@ using testing::SizeIs;
 
 json vectors(const std::string& part) { return manual("leadshine-ld2-can").at(part); }
 
-DriveModel leadshine(ResolveInput input = one_axis("canopen")) { return resolved(shipped("leadshine-ld2-can"), input); }
+model::DriveModel leadshine(ResolveInput input = one_axis("canopen")) {
+  return resolved(shipped("leadshine-ld2-can"), input);
+}
 
 /// As the drive layer has it once the drive told how it counts: so many units a turn.
-DriveModel leadshine_of(std::int64_t units_per_turn) {
+model::DriveModel leadshine_of(std::int64_t units_per_turn) {
   ResolveInput input = one_axis("canopen");
   input.constants["units_per_motor_rev"] = Rational(units_per_turn);
   return leadshine(input);
@@ -41,13 +43,14 @@ Held factory() {
 }
 
 /// What bring-up writes to a drive that holds these numbers, by name.
-Held written(const DriveModel& model, const Held& held) {
+Held written(const model::DriveModel& model, const Held& held) {
   Held out;
-  const auto number_of = [&](ObjectId id) -> std::optional<std::int64_t> {
+  const auto number_of = [&](model::ObjectId id) -> std::optional<std::int64_t> {
     const auto at = held.find(model.object(id).name);
     return at == held.end() ? std::nullopt : std::optional(at->second);
   };
-  for (const ObjectWrite& write : setup_writes(model, number_of)) out[model.object(write.object).name] = write.raw;
+  for (const model::ObjectWrite& write : model::setup_writes(model, number_of))
+    out[model.object(write.object).name] = write.raw;
   return out;
 }
 
@@ -67,7 +70,7 @@ TEST(Leadshine, EveryObjectIsWhereAndAsTheManualSays) {
     SCOPED_TRACE(object.name);
     const auto place = object.places.find("canopen");
     ASSERT_NE(place, object.places.end());
-    const bus::ObjectAddress address = place->second.address;
+    const ObjectAddress address = place->second.address;
     const auto row = rows.find({address.index, address.sub});
     if (row == rows.end()) {
       EXPECT_TRUE(named.contains(address.index)) << "is at an address that the manual does not have";
@@ -79,19 +82,19 @@ TEST(Leadshine, EveryObjectIsWhereAndAsTheManualSays) {
 }
 
 TEST(Leadshine, NothingIsMappedThatIsPrintedAsNotMappable) {
-  const DriveModel model = leadshine();
+  const model::DriveModel model = leadshine();
   std::map<std::pair<std::int64_t, std::int64_t>, std::string> pdo;
   const json objects = vectors("objects");
   for (const json& row : objects)
     if (row["pdo"].is_string() && row["sub"].is_number())
       pdo[{hex(row["index"]), row["sub"].get<std::int64_t>()}] = row["pdo"].get<std::string>();
   ASSERT_THAT(model.canopen.tpdos, SizeIs(4));
-  for (const TpdoProperties& tpdo : model.canopen.tpdos) {
+  for (const model::TpdoProperties& tpdo : model.canopen.tpdos) {
     EXPECT_EQ(tpdo.type, 255) << "254 is not supported";
     EXPECT_GT(tpdo.inhibit.value_or(0), 0) << "with type 255 an inhibit time must be set";
     EXPECT_EQ(tpdo.event_ms, std::nullopt) << "an event timer is not mentioned";
-    for (const ObjectId id : tpdo.map) {
-      const bus::ObjectAddress address = model.object(id).address;
+    for (const model::ObjectId id : tpdo.map) {
+      const ObjectAddress address = model.object(id).address;
       const auto said = pdo.find({address.index, address.sub});
       // Of what 3 and 4 carry nothing is printed, or RPDO: the drive is asked, and may refuse.
       EXPECT_TRUE(tpdo.number >= 3 || (said != pdo.end() && said->second == "TPDO")) << model.object(id).name;
@@ -101,7 +104,7 @@ TEST(Leadshine, NothingIsMappedThatIsPrintedAsNotMappable) {
 }
 
 TEST(Leadshine, ConversionsOfTheManualComeOutToTheDigit) {
-  const DriveModel model = leadshine_of(10000);
+  const model::DriveModel model = leadshine_of(10000);
   EXPECT_EQ(sent(model, Quantity::profile_velocity, 1500000), 250000);
   EXPECT_EQ(sent(model, Quantity::homing_speed_switch, 180000), 30000);
   EXPECT_EQ(sent(model, Quantity::homing_speed_zero, 120000), 20000);
@@ -114,7 +117,7 @@ TEST(Leadshine, ConversionsOfTheManualComeOutToTheDigit) {
 }
 
 TEST(Leadshine, UnitsPerTurnFollowTheThreeObjectsThatCompeteForThem) {
-  const DriveModel model = leadshine();
+  const model::DriveModel model = leadshine();
   ASSERT_THAT(model.constants, SizeIs(1));
   const auto counts = [&](std::int64_t override_, std::int64_t feed, std::int64_t encoder, std::int64_t numerator,
                           std::int64_t denominator) {
@@ -123,7 +126,8 @@ TEST(Leadshine, UnitsPerTurnFollowTheThreeObjectsThatCompeteForThem) {
                     {"encoder_increments", encoder},
                     {"gear_numerator", numerator},
                     {"gear_denominator", denominator}};
-    return value_of(model.constants[0], [&](ObjectId id) { return std::optional(held.at(model.object(id).name)); });
+    return model::value_of(model.constants[0],
+                           [&](model::ObjectId id) { return std::optional(held.at(model.object(id).name)); });
   };
   EXPECT_EQ(counts(0, 10000, 131072, 3, 7), Rational(10000)) << "6091h has no effect";
   EXPECT_EQ(counts(4000, 10000, 131072, 3, 7), Rational(4000)) << "Pr0.08 outranks 6092h";
@@ -131,7 +135,7 @@ TEST(Leadshine, UnitsPerTurnFollowTheThreeObjectsThatCompeteForThem) {
 }
 
 TEST(Leadshine, FactoryRampsAreReplacedByTheSameRampInAnyGear) {
-  const DriveModel model = leadshine();
+  const model::DriveModel model = leadshine();
   // 600 rpm/s = 10 turns/s2.
   EXPECT_EQ(written(model, factory()).at("profile_deceleration"), 100000);
   EXPECT_EQ(written(model, factory()).at("profile_acceleration"), 100000);
@@ -166,41 +170,41 @@ TEST(Leadshine, ARampThatDoesNotFitIsNotWritten) {
 }
 
 TEST(Leadshine, WatchesTheGatewayAndIsWatched) {
-  const DriveModel model = leadshine();
+  const model::DriveModel model = leadshine();
   EXPECT_TRUE(model.stops_by_itself);
   EXPECT_EQ(model.canopen.heartbeat, std::chrono::milliseconds(1000));
   EXPECT_EQ(model.canopen.own_heartbeat, std::chrono::milliseconds(500));
   ASSERT_THAT(model.loss_objects, SizeIs(1));
-  EXPECT_EQ(loss_stop_ms(model, true), 1500);
-  EXPECT_EQ(loss_stop_ms(model, false), kGoesOn) << "it does not hold 1016h";
-  EXPECT_EQ(loss_stop_ms(model, {}), kLossNotKnown) << "nobody has looked yet";
-  EXPECT_EQ(model.object(model.loss_objects[0]).address, (bus::ObjectAddress{0x1016, 1}));
+  EXPECT_EQ(model::loss_stop_ms(model, true), 1500);
+  EXPECT_EQ(model::loss_stop_ms(model, false), kGoesOn) << "it does not hold 1016h";
+  EXPECT_EQ(model::loss_stop_ms(model, {}), kLossNotKnown) << "nobody has looked yet";
+  EXPECT_EQ(model.object(model.loss_objects[0]).address, (ObjectAddress{0x1016, 1}));
   const Held after = written(model, {});
   EXPECT_EQ(after.at("consumer_heartbeat"), 0x007F05DC) << "node 127, 1500 ms";
   EXPECT_EQ(after.at("producer_heartbeat"), 1000);
 }
 
 TEST(Leadshine, AStartDoesNotWaitForABitThatIsNotValid) {
-  const DriveModel model = leadshine();
-  const AxisModel& axis = model.axes.at(0);
+  const model::DriveModel model = leadshine();
+  const model::AxisModel& axis = model.axes.at(0);
   EXPECT_FALSE(axis.cia402.setpoint_acknowledge);
   const auto& move = axis.command(Command::move_absolute);
   ASSERT_TRUE(move.has_value());
   std::vector<std::int64_t> words;
-  for (const Step& step : move->steps) {
-    if (step.verb == Step::Verb::write) words.push_back(step.literal);
-    if (step.verb != Step::Verb::wait) continue;
-    EXPECT_EQ(model.object(step.object).address, (bus::ObjectAddress{0x3001, 0}));
+  for (const model::Step& step : move->steps) {
+    if (step.verb == model::Step::Verb::write) words.push_back(step.literal);
+    if (step.verb != model::Step::Verb::wait) continue;
+    EXPECT_EQ(model.object(step.object).address, (ObjectAddress{0x3001, 0}));
     EXPECT_TRUE(step.optional) << "a drive without 3001h is only slower";
   }
   EXPECT_THAT(words, ElementsAre(0x0F, 0x2F, 0x3F));
 }
 
 TEST(Leadshine, EveryAlarmOfTheManualHasItsRow) {
-  const DriveModel model = leadshine();
+  const model::DriveModel model = leadshine();
   std::set<std::uint32_t> rows;
   std::set<std::uint32_t> told;
-  for (const AlarmRow& row : model.alarms) rows.insert(row.value.value_or(0));
+  for (const model::AlarmRow& row : model.alarms) rows.insert(row.value.value_or(0));
   const json alarms = vectors("alarms");
   EXPECT_GE(alarms.size(), 100U);
   for (const json& alarm : alarms)
@@ -209,7 +213,7 @@ TEST(Leadshine, EveryAlarmOfTheManualHasItsRow) {
 }
 
 TEST(Leadshine, HasEveryCommandAndNoMoreModesThanTheManualDescribes) {
-  const DriveModel model = leadshine();
+  const model::DriveModel model = leadshine();
   for (const Command command :
        {Command::enable, Command::disable, Command::quick_stop, Command::halt, Command::fault_reset,
         Command::move_absolute, Command::move_relative, Command::run_velocity, Command::run_torque, Command::home,
@@ -221,4 +225,4 @@ TEST(Leadshine, HasEveryCommandAndNoMoreModesThanTheManualDescribes) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

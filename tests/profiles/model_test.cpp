@@ -4,18 +4,18 @@
 
 #include <gtest/gtest.h>
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
-ObjectDef object(std::uint8_t size, bool is_signed) {
-  ObjectDef out;
+model::ObjectDef object(std::uint8_t size, bool is_signed) {
+  model::ObjectDef out;
   out.size = size;
   out.is_signed = is_signed;
   return out;
 }
 
-Binding scaled(Quantity quantity, Rational raw_per_unit) {
-  Binding out;
+model::Binding scaled(Quantity quantity, Rational raw_per_unit) {
+  model::Binding out;
   out.quantity = quantity;
   out.raw_per_unit = raw_per_unit;
   return out;
@@ -38,12 +38,12 @@ TEST(ObjectDef, KnowsItsRange) {
 }
 
 TEST(Binding, RoundsHalfAwayFromZeroOnceAtTheEnd) {
-  const Binding half = scaled(Quantity::target_velocity, Rational(1, 2));
+  const model::Binding half = scaled(Quantity::target_velocity, Rational(1, 2));
   EXPECT_EQ(half.to_raw(1, object(4, true)), 1);
   EXPECT_EQ(half.to_raw(-1, object(4, true)), -1);
   EXPECT_EQ(half.to_raw(3, object(4, true)), 2);
   EXPECT_EQ(half.to_register(-3), -6);
-  const Binding two = scaled(Quantity::velocity_actual, Rational(2));
+  const model::Binding two = scaled(Quantity::velocity_actual, Rational(2));
   EXPECT_EQ(two.to_register(1), 1);
   EXPECT_EQ(two.to_register(-1), -1);
   EXPECT_EQ(two.to_register(-3), -2);
@@ -51,12 +51,12 @@ TEST(Binding, RoundsHalfAwayFromZeroOnceAtTheEnd) {
 
 // A limit of 900 was 1200 for a drive that counts in 600.
 TEST(Binding, RoundsNothingFromWithinTheLimitsToBeyondThem) {
-  Binding speed = scaled(Quantity::profile_velocity, Rational(1, 600));
+  model::Binding speed = scaled(Quantity::profile_velocity, Rational(1, 600));
   speed.limits = {0, 900};
   EXPECT_EQ(speed.to_raw(900, object(2, true)), 1);
   EXPECT_EQ(speed.to_raw(300, object(2, true)), 1);
   EXPECT_EQ(speed.to_raw(299, object(2, true)), 0);
-  Binding position = scaled(Quantity::target_position, Rational(-1, 1'000));
+  model::Binding position = scaled(Quantity::target_position, Rational(-1, 1'000));
   position.limits = {-1'500, 1'500};
   EXPECT_EQ(position.to_raw(1'500, object(4, true)), -1);
   EXPECT_EQ(position.to_raw(-1'500, object(4, true)), 1);
@@ -66,16 +66,16 @@ TEST(Binding, RoundsNothingFromWithinTheLimitsToBeyondThem) {
 }
 
 TEST(Binding, GivesTheBoundOfARegisterThatCannotShowIt) {
-  const Binding position = scaled(Quantity::position_actual, Rational(-1, 1'000));
+  const model::Binding position = scaled(Quantity::position_actual, Rational(-1, 1'000));
   EXPECT_EQ(position.to_register_or_bound(-3'000'000), 2'147'483'647);
   EXPECT_EQ(position.to_register_or_bound(3'000'000), -2'147'483'647);
   EXPECT_EQ(position.to_register_or_bound(3), -3'000);
-  const Binding huge = scaled(Quantity::position_actual, Rational(1, INT64_MAX));
+  const model::Binding huge = scaled(Quantity::position_actual, Rational(1, INT64_MAX));
   EXPECT_EQ(huge.to_register_or_bound(-2'147'483'647), -2'147'483'647);
 }
 
 TEST(Binding, GivesNoValueWhereARegisterCannotShowIt) {
-  const Binding torque = scaled(Quantity::torque_actual, Rational(1, 100));
+  const model::Binding torque = scaled(Quantity::torque_actual, Rational(1, 100));
   EXPECT_EQ(torque.to_register(327), 32700);
   EXPECT_EQ(torque.to_register(328), std::nullopt);
   EXPECT_EQ(torque.to_register(-328), std::nullopt);
@@ -86,21 +86,21 @@ TEST(Binding, GivesNoValueWhereARegisterCannotShowIt) {
 }
 
 TEST(Binding, GivesNoValueWhereTheObjectCannotTakeIt) {
-  const Binding speed = scaled(Quantity::target_velocity, Rational(1, 1000));
+  const model::Binding speed = scaled(Quantity::target_velocity, Rational(1, 1000));
   EXPECT_EQ(speed.to_raw(32767499, object(2, true)), 32767);
   EXPECT_EQ(speed.to_raw(32767500, object(2, true)), std::nullopt);
   EXPECT_EQ(speed.to_raw(-1000, object(2, false)), std::nullopt);
 }
 
 TEST(Binding, AnExtremeFactorNeverWraps) {
-  const Binding huge = scaled(Quantity::target_position, Rational(INT64_MAX));
+  const model::Binding huge = scaled(Quantity::target_position, Rational(INT64_MAX));
   EXPECT_EQ(huge.to_raw(3, object(4, true)), std::nullopt);
-  const Binding tiny = scaled(Quantity::position_actual, Rational(1, INT64_MAX));
+  const model::Binding tiny = scaled(Quantity::position_actual, Rational(1, INT64_MAX));
   EXPECT_EQ(tiny.to_register(2147483647), std::nullopt);
 }
 
-Condition condition(std::uint32_t mask, Condition::Test test, std::vector<std::int64_t> values) {
-  Condition out;
+model::Condition condition(std::uint32_t mask, model::Condition::Test test, std::vector<std::int64_t> values) {
+  model::Condition out;
   out.mask = mask;
   out.test = test;
   out.values = std::move(values);
@@ -108,33 +108,33 @@ Condition condition(std::uint32_t mask, Condition::Test test, std::vector<std::i
 }
 
 TEST(Condition, ComparesMaskedBitsOrTheNumberItself) {
-  const ObjectDef word = object(2, false);
-  EXPECT_TRUE(condition(0x6F, Condition::Test::equals, {0x27}).holds(word, 0xC037));
-  EXPECT_FALSE(condition(0x6F, Condition::Test::equals, {0x27}).holds(word, 0x0250));
-  EXPECT_TRUE(condition(0x24, Condition::Test::not_equals, {0x24}).holds(word, 0x0007));
-  EXPECT_TRUE(condition(0, Condition::Test::equals, {-3}).holds(object(1, true), 0xFD));
-  EXPECT_FALSE(condition(0, Condition::Test::equals, {-3}).holds(object(1, false), 0xFD));
+  const model::ObjectDef word = object(2, false);
+  EXPECT_TRUE(condition(0x6F, model::Condition::Test::equals, {0x27}).holds(word, 0xC037));
+  EXPECT_FALSE(condition(0x6F, model::Condition::Test::equals, {0x27}).holds(word, 0x0250));
+  EXPECT_TRUE(condition(0x24, model::Condition::Test::not_equals, {0x24}).holds(word, 0x0007));
+  EXPECT_TRUE(condition(0, model::Condition::Test::equals, {-3}).holds(object(1, true), 0xFD));
+  EXPECT_FALSE(condition(0, model::Condition::Test::equals, {-3}).holds(object(1, false), 0xFD));
 }
 
 TEST(Condition, InAndNotInLookThroughTheWholeList) {
-  const ObjectDef word = object(2, false);
-  const auto blocked = condition(0x8005, Condition::Test::in, {1, 4, 5});
+  const model::ObjectDef word = object(2, false);
+  const auto blocked = condition(0x8005, model::Condition::Test::in, {1, 4, 5});
   EXPECT_TRUE(blocked.holds(word, 0x0011)) << "enable together with a limit";
   EXPECT_TRUE(blocked.holds(word, 0x0004));
   EXPECT_FALSE(blocked.holds(word, 0x8001)) << "a speed selector, although its lowest bit is set";
-  EXPECT_TRUE(condition(0, Condition::Test::not_in, {1, 2}).holds(word, 0));
-  EXPECT_FALSE(condition(0, Condition::Test::not_in, {1, 2}).holds(word, 2));
+  EXPECT_TRUE(condition(0, model::Condition::Test::not_in, {1, 2}).holds(word, 0));
+  EXPECT_FALSE(condition(0, model::Condition::Test::not_in, {1, 2}).holds(word, 2));
 }
 
 TEST(DriveModel, FindsObjectsByAddress) {
-  DriveModel model;
+  model::DriveModel model;
   model.objects.push_back(object(2, false));
   model.objects.back().address = {0x6041, 0};
   model.objects.push_back(object(4, true));
   model.objects.back().address = {0x607D, 2};
   EXPECT_EQ(model.find({0x607D, 2}), 1);
-  EXPECT_EQ(model.find({0x607D, 1}), kNoObject);
+  EXPECT_EQ(model.find({0x607D, 1}), model::kNoObject);
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -6,7 +6,7 @@
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST(ProfileFiles, AreFoundByNameInTheFirstFolderThatHasThemOrByPath) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -7,7 +7,7 @@
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using std::chrono::microseconds;
@@ -19,19 +19,19 @@ using testing::IsEmpty;
 
 using Raw = std::vector<std::pair<std::string, std::int64_t>>;
 
-Raw setup_of(const DriveModel& model) {
+Raw setup_of(const model::DriveModel& model) {
   Raw out;
-  for (const ObjectWrite& write : model.setup) out.emplace_back(model.object(write.object).name, write.raw);
+  for (const model::ObjectWrite& write : model.setup) out.emplace_back(model.object(write.object).name, write.raw);
   return out;
 }
 
-DriveModel on_canopen(const std::string& profile) { return resolved(shipped(profile), one_axis("canopen")); }
+model::DriveModel on_canopen(const std::string& profile) { return resolved(shipped(profile), one_axis("canopen")); }
 
 /// A drive of one TPDO, with changes.
 class CanopenProfile : public ::testing::Test {
  protected:
   LoadedProfile load() { return load_profile(folder_.write("canopen-only.json", profile_.dump()).string()); }
-  DriveModel model() { return resolved(load(), one_axis("canopen")); }
+  model::DriveModel model() { return resolved(load(), one_axis("canopen")); }
   nlohmann::json& canopen() { return profile_["protocols"]["canopen"]; }
 
   const test::OwnFolder folder_;
@@ -44,7 +44,7 @@ class CanopenProfile : public ::testing::Test {
 };
 
 TEST(KincoJdOnCanopen, TellsAndHearsHeartbeats) {
-  const DriveModel model = on_canopen("kinco-jd");
+  const model::DriveModel model = on_canopen("kinco-jd");
   EXPECT_EQ(setup_of(model).front(), (Raw::value_type{"controlword", 6})) << "it ignores every word before this one";
   EXPECT_THAT(setup_of(model), Contains(Raw::value_type{"producer_heartbeat", 1000}));
   EXPECT_EQ(setup_of(model).back(), (Raw::value_type{"consumer_heartbeat", 0x007F05DC}));
@@ -57,7 +57,7 @@ TEST(KincoJdOnCanopen, TellsAndHearsHeartbeats) {
 }
 
 TEST(KincoMdOnCanopen, IsGuardedAndMadeToMindIt) {
-  const DriveModel model = on_canopen("kinco-md");
+  const model::DriveModel model = on_canopen("kinco-md");
   EXPECT_THAT(setup_of(model), ElementsAre(Raw::value_type{"controlword", 6}, Raw::value_type{"producer_heartbeat", 0},
                                            Raw::value_type{"guard_time", 500}, Raw::value_type{"life_time_factor", 3},
                                            Raw::value_type{"communication_loss_reaction", 1}));
@@ -73,7 +73,7 @@ TEST(KincoMdOnCanopen, IsGuardedAndMadeToMindIt) {
 
 TEST(KincoOnCanopen, StateAndPositionComeTogether) {
   for (const std::string drive : {"kinco-jd", "kinco-md"}) {
-    const DriveModel model = on_canopen(drive);
+    const model::DriveModel model = on_canopen(drive);
     ASSERT_FALSE(model.canopen.tpdos.empty());
     EXPECT_THAT(names(model, model.canopen.tpdos[0].map),
                 testing::UnorderedElementsAre("statusword", "position_actual"));
@@ -82,10 +82,10 @@ TEST(KincoOnCanopen, StateAndPositionComeTogether) {
 }
 
 TEST(KincoOnCanopen, InhibitTimesAreInTheUnitsOfTheDrive) {
-  const TpdoProperties jd = on_canopen("kinco-jd").canopen.tpdos.at(0);
+  const model::TpdoProperties jd = on_canopen("kinco-jd").canopen.tpdos.at(0);
   EXPECT_EQ(jd.inhibit, 50) << "of 100 us";
   EXPECT_EQ(jd.event_ms, std::nullopt);
-  const TpdoProperties md = on_canopen("kinco-md").canopen.tpdos.at(0);
+  const model::TpdoProperties md = on_canopen("kinco-md").canopen.tpdos.at(0);
   EXPECT_EQ(md.inhibit, 5) << "of 1 ms";
   EXPECT_EQ(md.event_ms, 20);
   EXPECT_EQ(jd.inhibit_time, milliseconds(5));
@@ -96,13 +96,13 @@ TEST(CanopenIdentity, IsWhatTheConfigurationAsksFor) {
   ResolveInput input = one_axis("canopen");
   EXPECT_FALSE(resolved(shipped("kinco-jd"), input).canopen.identity_given());
   input.identity[3] = 77;
-  const DriveModel model = resolved(shipped("kinco-jd"), input);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), input);
   EXPECT_TRUE(model.canopen.identity_given());
   EXPECT_THAT(model.canopen.identity, ElementsAre(std::nullopt, std::nullopt, std::nullopt, 77U));
 }
 
 TEST_F(CanopenProfile, SaysNothingThatItDoesNotSay) {
-  const DriveModel plain = model();
+  const model::DriveModel plain = model();
   EXPECT_EQ(plain.canopen.confirm, milliseconds(1000));
   EXPECT_EQ(plain.canopen.sync, Duration{});
   EXPECT_EQ(plain.canopen.boot, Duration{});
@@ -118,7 +118,7 @@ TEST_F(CanopenProfile, EveryKeyArrives) {
   canopen()["tpdo"][0].update({{"type", 4}, {"inhibit_us", 250}});
   canopen()["unused_tpdos"] = {1, 3};
   canopen()["guard"] = {{"time_ms", 200}, {"life_factor", 5}};
-  const CanopenProperties facts = model().canopen;
+  const model::CanopenProperties facts = model().canopen;
   EXPECT_EQ(facts.sync, milliseconds(10));
   EXPECT_EQ(facts.boot, milliseconds(3000));
   EXPECT_EQ(facts.confirm, milliseconds(250));
@@ -133,7 +133,7 @@ TEST_F(CanopenProfile, EveryKeyArrives) {
 
 TEST_F(CanopenProfile, GuardingWithoutALossReactionWritesNothing) {
   canopen()["guard"] = {{"time_ms", 200}};
-  const DriveModel guarded = model();
+  const model::DriveModel guarded = model();
   EXPECT_THAT(guarded.setup, IsEmpty());
   EXPECT_FALSE(guarded.stops_by_itself) << "the gateway notices, the drive does not";
 }
@@ -141,10 +141,10 @@ TEST_F(CanopenProfile, GuardingWithoutALossReactionWritesNothing) {
 TEST_F(CanopenProfile, ANumberInThePlaceOfFactoryNumbersNeedsNoUnit) {
   profile_["objects"]["option"] = {{"type", "i16"}, {"access", "rw"}, {"at", {{"canopen", "605A.00"}}}};
   profile_["setup"] = {{{"write", "option"}, {"value", 2}, {"instead_of", {0, -1}}, {"why", "coasts otherwise"}}};
-  const DriveModel plain = model();
+  const model::DriveModel plain = model();
   EXPECT_THAT(plain.setup, IsEmpty()) << "never written without a look at what the drive holds";
   const auto due = [&](std::int64_t held) {
-    return setup_writes(plain, [&](ObjectId) { return std::optional(held); });
+    return model::setup_writes(plain, [&](model::ObjectId) { return std::optional(held); });
   };
   for (const std::int64_t factory : {0, -1}) {
     ASSERT_EQ(due(factory).size(), 1U);
@@ -157,10 +157,10 @@ TEST_F(CanopenProfile, ANumberInThePlaceOfFactoryNumbersNeedsNoUnit) {
 
 TEST_F(CanopenProfile, AWidthThatNobodyPrintedIsOnlyAskedForOnCanopen) {
   profile_["objects"]["mystery"] = {{"type", "u32"}, {"any_width", true}, {"at", {{"canopen", "2008.00"}}}};
-  const DriveModel plain = model();
+  const model::DriveModel plain = model();
   EXPECT_TRUE(plain.object(plain.find({0x2008, 0})).any_width);
   EXPECT_FALSE(plain.object(plain.find({0x6041, 0})).any_width);
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

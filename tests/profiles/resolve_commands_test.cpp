@@ -5,28 +5,28 @@
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 /// "controlword=6 wait(statusword&111==33,500?) controlword=15 ..."
-std::string written(const DriveModel& model, const Steps& steps) {
+std::string written(const model::DriveModel& model, const model::Steps& steps) {
   std::string out;
-  for (const Step& step : steps) {
+  for (const model::Step& step : steps) {
     if (!out.empty()) out += ' ';
     const std::string& name = model.object(step.object).name;
-    if (step.verb == Step::Verb::write) {
+    if (step.verb == model::Step::Verb::write) {
       out += name + "=" + std::to_string(step.literal);
       continue;
     }
     out += "wait(" + name + "&" + std::to_string(step.until.mask) +
-           (step.until.test == Condition::Test::equals ? "==" : "!=") + std::to_string(step.until.values.at(0)) + "," +
-           std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(step.limit).count()) +
+           (step.until.test == model::Condition::Test::equals ? "==" : "!=") + std::to_string(step.until.values.at(0)) +
+           "," + std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(step.limit).count()) +
            (step.optional ? "?)" : ")");
   }
   return out;
 }
 
-std::string steps(const DriveModel& model, Command command) {
+std::string steps(const model::DriveModel& model, Command command) {
   const auto& def = model.axes.at(0).command(command);
   return def ? written(model, def->steps) : "unsupported";
 }
@@ -62,22 +62,22 @@ TEST(KincoCommands, TakeTheStepsOfTheManuals) {
 
 TEST(KincoCommands, AcknowledgingSavingAndSetPosition) {
   EXPECT_TRUE(resolved(shipped("kinco-md"), kinco_axis()).axes[0].cia402.setpoint_acknowledge);
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   const auto& set_position = model.axes[0].command(Command::set_position);
   ASSERT_TRUE(set_position);
   EXPECT_TRUE(set_position->zero_only);
-  const ObjectDef& save = model.object(model.find({0x2FF0, 1}));
+  const model::ObjectDef& save = model.object(model.find({0x2FF0, 1}));
   EXPECT_TRUE(save.trigger);
-  EXPECT_EQ(save.nvm, Nvm::yes);
+  EXPECT_EQ(save.nvm, model::Nvm::yes);
 }
 
 TEST(KincoCommands, AWaitThatRunsOutIsNotReached) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   EXPECT_EQ(model.axes[0].command(Command::enable)->steps.back().otherwise, Errc::not_reached);
 }
 
 TEST(KincoCommands, TheJdHaltsByItsTargetVelocityAndElsewhereByQuickStop) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   const auto& halt = model.axes[0].command(Command::halt);
   ASSERT_TRUE(halt);
   EXPECT_TRUE(halt->quick_stop_otherwise);
@@ -88,7 +88,7 @@ TEST(KincoCommands, TheJdHaltsByItsTargetVelocityAndElsewhereByQuickStop) {
 }
 
 TEST(KincoCommands, TheMdHaltsByBitEightButNotInTorqueMode) {
-  const DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
   const auto& halt = model.axes[0].command(Command::halt);
   ASSERT_TRUE(halt);
   ASSERT_EQ(halt->variants.size(), 1U);
@@ -98,30 +98,30 @@ TEST(KincoCommands, TheMdHaltsByBitEightButNotInTorqueMode) {
 }
 
 TEST(KincoModel, RolesAreTheObjectsOfTheirQuantities) {
-  const DriveModel jd = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel jd = resolved(shipped("kinco-jd"), kinco_axis());
   EXPECT_EQ(jd.find({0x6041, 0}), jd.axes[0].statusword);
   EXPECT_EQ(jd.find({0x6040, 0}), jd.axes[0].controlword);
   EXPECT_EQ(jd.find({0x6061, 0}), jd.axes[0].mode_display);
   EXPECT_TRUE(jd.axes[0].cia402.mode_display);
   EXPECT_EQ(jd.find({0x2602, 0}), jd.axes[0].fault_words[1]);
-  const DriveModel md = resolved(shipped("kinco-md"), kinco_axis());
+  const model::DriveModel md = resolved(shipped("kinco-md"), kinco_axis());
   EXPECT_EQ(md.axes[0].mode_display, md.axes[0].mode) << "the MD has no display: its mode is read back";
   EXPECT_FALSE(md.axes[0].cia402.mode_display);
 }
 
 TEST(KincoModel, ChecksNameTheInputsThatKeepTheBusFromControl) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
   const auto blocking = [&](const std::string& name) {
     return *std::find_if(model.checks.begin(), model.checks.end(),
-                         [&](const Check& check) { return check.name == name; });
+                         [&](const model::Check& check) { return check.name == name; });
   };
-  const Check din1 = blocking("din1_local_control");
+  const model::Check din1 = blocking("din1_local_control");
   EXPECT_EQ(din1.alarm, AxisAlarm::local_control);
-  EXPECT_EQ(model.object(din1.bad.object).address, (bus::ObjectAddress{0x2010, 3}));
+  EXPECT_EQ(model.object(din1.bad.object).address, (ObjectAddress{0x2010, 3}));
   ASSERT_EQ(din1.remedy.size(), 2U);
   EXPECT_EQ(din1.remedy[0].raw, 0);
-  EXPECT_EQ(model.object(din1.remedy[1].object).address, (bus::ObjectAddress{0x2FF0, 1}));
-  EXPECT_EQ(model.object(blocking("din8_local_control").bad.object).address, (bus::ObjectAddress{0x2010, 0x1D}));
+  EXPECT_EQ(model.object(din1.remedy[1].object).address, (ObjectAddress{0x2FF0, 1}));
+  EXPECT_EQ(model.object(blocking("din8_local_control").bad.object).address, (ObjectAddress{0x2010, 0x1D}));
   EXPECT_EQ(blocking("limit_inputs_open").alarm, AxisAlarm::limit_inputs_open);
 }
 
@@ -141,8 +141,8 @@ TEST(Checks, HalfARemedyIsNone) {
 TEST(KincoModel, HomingMethodsAndTheirEnd) {
   ResolveInput input = kinco_axis();
   input.axes[0].homing_method = static_cast<std::int16_t>(-17);
-  const DriveModel model = resolved(shipped("kinco-jd"), input);
-  const AxisModel& axis = model.axes[0];
+  const model::DriveModel model = resolved(shipped("kinco-jd"), input);
+  const model::AxisModel& axis = model.axes[0];
   EXPECT_EQ(axis.homing_methods.size(), 33U);
   EXPECT_EQ(axis.homing_method, -17);
   ASSERT_TRUE(axis.homed && axis.homing_failed);
@@ -152,4 +152,4 @@ TEST(KincoModel, HomingMethodsAndTheirEnd) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -5,24 +5,26 @@
 #include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::ElementsAre;
 using Known = std::vector<std::optional<Rational>>;
 
-DriveModel waiting(ResolveInput input = one_axis("modbus-rtu")) { return resolved(valid_file("virtual"), input); }
+model::DriveModel waiting(ResolveInput input = one_axis("modbus-rtu")) {
+  return resolved(valid_file("virtual"), input);
+}
 
 /// The model as the drive layer makes it once it has read the constants.
-DriveModel applied(DriveModel model, const Known& constants) {
-  for (Binding& bound : model.axes.at(0).bindings)
-    if (bound.object != kNoObject) apply_recipe(bound, constants, model.object(bound.object));
+model::DriveModel applied(model::DriveModel model, const Known& constants) {
+  for (model::Binding& bound : model.axes.at(0).bindings)
+    if (bound.object != model::kNoObject) model::apply_recipe(bound, constants, model.object(bound.object));
   return model;
 }
 
 /// What `counts` is where the drive holds these numbers.
-std::optional<Rational> counts_of(const DriveModel& model, std::map<std::string, std::int64_t> held) {
-  return value_of(model.constants.at(0), [&](ObjectId id) -> std::optional<std::int64_t> {
+std::optional<Rational> counts_of(const model::DriveModel& model, std::map<std::string, std::int64_t> held) {
+  return model::value_of(model.constants.at(0), [&](model::ObjectId id) -> std::optional<std::int64_t> {
     const auto at = held.find(model.object(id).name);
     return at == held.end() ? std::nullopt : std::optional(at->second);
   });
@@ -31,7 +33,7 @@ std::optional<Rational> counts_of(const DriveModel& model, std::map<std::string,
 TEST(DriveConstants, AreListedOnceInTheOrderOfNeed) {
   ResolveInput input = one_axis("modbus-rtu");
   input.constants["spindle"] = Rational(5);
-  const DriveModel model = waiting(input);
+  const model::DriveModel model = waiting(input);
   ASSERT_EQ(model.constants.size(), 2U);
   EXPECT_EQ(model.constants[0].name, "counts");
   EXPECT_EQ(model.constants[1].name, "scale");
@@ -41,13 +43,13 @@ TEST(DriveConstants, AreListedOnceInTheOrderOfNeed) {
 }
 
 TEST(DriveConstants, ThatNeedAConstantNobodyGaveAreNotSupported) {
-  const DriveModel model = waiting();
+  const model::DriveModel model = waiting();
   ASSERT_EQ(model.constants.size(), 1U) << "\"scale\" needs \"spindle\"";
   EXPECT_EQ(model.axes[0].binding(Quantity::profile_acceleration), nullptr);
 }
 
 TEST(DriveConstants, TheFirstRuleThatHoldsGivesTheValue) {
-  const DriveModel model = waiting();
+  const model::DriveModel model = waiting();
   EXPECT_EQ(counts_of(model, {{"resolution", 4096}, {"gear", 3}, {"lines", 9}}), Rational(4096));
   EXPECT_EQ(counts_of(model, {{"resolution", 0}, {"gear", 3}, {"lines", 9}}), Rational(9)) << "teeth are 3 as well";
   EXPECT_EQ(counts_of(model, {{"resolution", 0}, {"gear", 5}, {"lines", 100}}), Rational(2000, 3));
@@ -55,8 +57,8 @@ TEST(DriveConstants, TheFirstRuleThatHoldsGivesTheValue) {
 }
 
 TEST(DriveConstants, WhatWaitsForThemHasNoValueAndItsLimitsAreProvisional) {
-  const DriveModel model = waiting();
-  const Binding& target = binding(model, Quantity::target_position);
+  const model::DriveModel model = waiting();
+  const model::Binding& target = binding(model, Quantity::target_position);
   EXPECT_FALSE(target.scaled);
   EXPECT_TRUE(target.recipe.waits());
   EXPECT_EQ(target.to_register(1000), std::nullopt);
@@ -72,7 +74,7 @@ TEST(DriveConstants, WhatWaitsForThemHasNoValueAndItsLimitsAreProvisional) {
 TEST(DriveConstants, AConfiguredConstantIsNotRead) {
   ResolveInput input = one_axis("modbus-rtu");
   input.constants["counts"] = Rational(2000);
-  const DriveModel model = waiting(input);
+  const model::DriveModel model = waiting(input);
   EXPECT_TRUE(model.constants.empty());
   EXPECT_TRUE(binding(model, Quantity::target_position).scaled);
   EXPECT_EQ(sent(model, Quantity::target_position, 10000), 2000);
@@ -87,11 +89,11 @@ TEST(DriveConstants, OnceReadABindingIsAsIfTheyHadBeenConfigured) {
     input.axes[0].units_per_rev = Rational(60000, 37);
     input.axes[0].position_limits = Range{-1000, 250000};
     input.axes[0].velocity_limit = 700000;
-    const DriveModel read = applied(waiting(input), {Rational(2000, 3)});
+    const model::DriveModel read = applied(waiting(input), {Rational(2000, 3)});
     input.constants["counts"] = Rational(2000, 3);
-    const DriveModel configured = waiting(input);
+    const model::DriveModel configured = waiting(input);
     ASSERT_EQ(read.axes[0].supported, configured.axes[0].supported);
-    for (const Binding& bound : read.axes[0].bindings) {
+    for (const model::Binding& bound : read.axes[0].bindings) {
       SCOPED_TRACE(row(bound.quantity).name);
       EXPECT_TRUE(bound.scaled);
       EXPECT_EQ(bound.raw_per_unit, binding(configured, bound.quantity).raw_per_unit);
@@ -103,11 +105,11 @@ TEST(DriveConstants, OnceReadABindingIsAsIfTheyHadBeenConfigured) {
 }
 
 TEST(DriveConstants, TheObjectsOwnRangeLimitsAWriteOnceTheScaleIsKnown) {
-  const DriveModel model = applied(waiting(), {Rational(6000)});
+  const model::DriveModel model = applied(waiting(), {Rational(6000)});
   // 20000 counts/s of 6000 a turn are 200 rpm.
   EXPECT_EQ(binding(model, Quantity::target_velocity).limits, (Range{-200000, 200000}));
   EXPECT_EQ(sent(model, Quantity::target_velocity, 200000), 20000);
-  const DriveModel another = applied(model, {Rational(3000)});
+  const model::DriveModel another = applied(model, {Rational(3000)});
   EXPECT_EQ(binding(another, Quantity::target_velocity).limits, (Range{-400000, 400000})) << "made anew, not narrowed";
 }
 
@@ -115,8 +117,8 @@ TEST(DriveConstants, WithoutAUsableValueThereIsNoScale) {
   const Rational prime_in_32_bits(2147483647);
   for (const std::optional<Rational>& useless :
        {std::optional<Rational>{}, std::optional(Rational(0)), std::optional(Rational(-4096))}) {
-    const DriveModel model = applied(applied(waiting(), {Rational(6000)}), {useless});
-    const Binding& target = binding(model, Quantity::target_position);
+    const model::DriveModel model = applied(applied(waiting(), {Rational(6000)}), {useless});
+    const model::Binding& target = binding(model, Quantity::target_position);
     EXPECT_FALSE(target.scaled);
     EXPECT_EQ(target.to_register(1), std::nullopt);
     EXPECT_EQ(target.limits, target.recipe.allowed);
@@ -129,11 +131,11 @@ TEST(DriveConstants, WithoutAUsableValueThereIsNoScale) {
 TEST(DriveConstants, AScaleBeyondSixtyFourBitsIsNoneAndNoCrash) {
   ResolveInput input = one_axis("modbus-rtu");
   input.axes[0].units_per_rev = Rational(1000000000039);
-  const DriveModel model = applied(waiting(input), {Rational(1, 4294967291)});
+  const model::DriveModel model = applied(waiting(input), {Rational(1, 4294967291)});
   EXPECT_FALSE(binding(model, Quantity::target_position).scaled);
   EXPECT_FALSE(binding(model, Quantity::position_actual).scaled);
   EXPECT_TRUE(binding(model, Quantity::target_velocity).scaled);
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

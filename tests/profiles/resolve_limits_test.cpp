@@ -3,12 +3,12 @@
 #include "gateway/model/scale.hpp"
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 TEST(ResolvedLimits, TheDrivesOwnClampIsALimitRoundedInwards) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  const Binding& velocity = binding(model, Quantity::target_velocity);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::Binding& velocity = binding(model, Quantity::target_velocity);
   EXPECT_EQ(velocity.limits, (Range{-6143999, 6143999}));
   EXPECT_LE(sent(model, Quantity::target_velocity, velocity.limits.max), 16777215);
   EXPECT_GE(sent(model, Quantity::target_velocity, velocity.limits.min), -16777215);
@@ -21,8 +21,8 @@ TEST(ResolvedLimits, EveryValueWithinTheLimitsFitsTheObjectOnBothEnds) {
       input.constants["rated_current_a"] = Rational(7, 3);
       input.axes[0].inverted = inverted;
       input.axes[0].units_per_rev = Rational(360001, 37);
-      const DriveModel model = resolved(shipped(drive), input);
-      for (const Binding& bound : model.axes[0].bindings) {
+      const model::DriveModel model = resolved(shipped(drive), input);
+      for (const model::Binding& bound : model.axes[0].bindings) {
         if (!bound.writable) continue;
         SCOPED_TRACE(drive + " " + std::string(row(bound.quantity).name));
         EXPECT_LT(bound.limits.min, bound.limits.max);
@@ -38,10 +38,10 @@ TEST(ResolvedLimits, SpeedsRampsAndTorqueStartAtTheLeastThatTheDriveHolds) {
   ResolveInput input = kinco_axis();
   input.constants["rated_current_a"] = Rational(4);
   for (const char* profile : {"kinco-jd", "kinco-md"}) {
-    const DriveModel model = resolved(shipped(profile), input);
+    const model::DriveModel model = resolved(shipped(profile), input);
     for (const Quantity q : {Quantity::profile_velocity, Quantity::profile_acceleration, Quantity::max_velocity,
                              Quantity::homing_speed_zero, Quantity::max_torque}) {
-      const Binding& bound = binding(model, q);
+      const model::Binding& bound = binding(model, q);
       EXPECT_GE(bound.to_raw(bound.limits.min, model.object(bound.object)).value_or(0), 1) << profile << row(q).name;
       EXPECT_GT(bound.limits.min, 0) << profile << row(q).name;
     }
@@ -56,7 +56,7 @@ TEST(ResolvedLimits, TheAxisLimitsNarrowWhatAClientMayWrite) {
   input.axes[0].acceleration_limit = 6000;
   input.axes[0].torque_limit = 800;
   input.axes[0].quick_stop_deceleration_min = 3000;
-  const DriveModel model = resolved(shipped("kinco-md"), input);
+  const model::DriveModel model = resolved(shipped("kinco-md"), input);
   EXPECT_EQ(binding(model, Quantity::target_position).limits, (Range{-1000, 250000}));
   EXPECT_EQ(binding(model, Quantity::target_velocity).limits, (Range{-1500000, 1500000}));
   EXPECT_EQ(binding(model, Quantity::profile_velocity).limits.max, 1500000);
@@ -105,19 +105,19 @@ TEST(ResolvedLimits, AnAxisLimitThatLeavesNothingIsAFault) {
 }
 
 TEST(Scale, RangesAreRoundedInwardsAlsoForNegativeFactors) {
-  EXPECT_EQ(registers_within({-10, 10}, Rational(3)), (Range{-3, 3}));
-  EXPECT_EQ(registers_within({-10, 20}, Rational(-3)), (Range{-6, 3}));
-  EXPECT_EQ(registers_within({0, 255}, Rational(1, 2)), (Range{0, 510}));
-  EXPECT_EQ(registers_within({INT64_MIN, INT64_MAX}, Rational(1, 1000)), (Range{INT64_MIN, INT64_MAX}))
+  EXPECT_EQ(model::registers_within({-10, 10}, Rational(3)), (Range{-3, 3}));
+  EXPECT_EQ(model::registers_within({-10, 20}, Rational(-3)), (Range{-6, 3}));
+  EXPECT_EQ(model::registers_within({0, 255}, Rational(1, 2)), (Range{0, 510}));
+  EXPECT_EQ(model::registers_within({INT64_MIN, INT64_MAX}, Rational(1, 1000)), (Range{INT64_MIN, INT64_MAX}))
       << "saturates, never wraps";
 }
 
 TEST(Scale, AmountsKeepTheirFraction) {
-  EXPECT_EQ(rounded_up(Rational(7, 2)), 4);
-  EXPECT_EQ(rounded_down(Rational(7, 2)), 3);
-  EXPECT_EQ(rounded_up(Rational(-7, 2)), -3);
-  EXPECT_EQ(rounded_down(Rational(-7, 2)), -4);
+  EXPECT_EQ(model::rounded_up(Rational(7, 2)), 4);
+  EXPECT_EQ(model::rounded_down(Rational(7, 2)), 3);
+  EXPECT_EQ(model::rounded_up(Rational(-7, 2)), -3);
+  EXPECT_EQ(model::rounded_down(Rational(-7, 2)), -4);
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -6,7 +6,7 @@
 
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::AllOf;
@@ -63,7 +63,7 @@ TEST(Refusals, NameThePlaceInTheConfigurationAndWhatIsWrong) {
 
 TEST(Refusals, AKincoWithoutItsPeakCurrentHasNoCurrentsAndNoTorque) {
   for (const std::string name : {"kinco-jd", "kinco-md"}) {
-    const DriveModel model = resolved(shipped(name), one_axis());
+    const model::DriveModel model = resolved(shipped(name), one_axis());
     EXPECT_EQ(model.axes.at(0).binding(Quantity::current_actual), nullptr) << name;
     EXPECT_EQ(model.axes.at(0).binding(Quantity::torque_actual), nullptr) << name;
     EXPECT_NE(model.axes.at(0).binding(Quantity::position_actual), nullptr) << name;
@@ -72,7 +72,7 @@ TEST(Refusals, AKincoWithoutItsPeakCurrentHasNoCurrentsAndNoTorque) {
 
 TEST(Refusals, AProfileWithMistakesIsNotResolved) {
   LoadedProfile loaded = load_profile(valid_file("minimal"));
-  ASSERT_TRUE(std::holds_alternative<DriveModel>(resolve(loaded, one_axis())));
+  ASSERT_TRUE(std::holds_alternative<model::DriveModel>(resolve(loaded, one_axis())));
   loaded.faults.push_back({loaded.file, "/title", "is wrong"});
   EXPECT_TRUE(std::holds_alternative<std::vector<Fault>>(resolve(loaded, one_axis())));
 }
@@ -87,4 +87,4 @@ TEST(Refusals, UnitsBeyondSixtyFourBitsAreAFaultAndNoCrash) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

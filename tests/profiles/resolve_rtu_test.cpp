@@ -4,26 +4,26 @@
 
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::ElementsAre;
 using testing::Pair;
 
-DriveModel on_rtu(const std::string& drive) {
+model::DriveModel on_rtu(const std::string& drive) {
   ResolveInput input = kinco_axis();
   input.protocol = "modbus-rtu";
   input.constants["rated_current_a"] = Rational(4);
   return resolved(shipped(drive), input);
 }
 
-DriveModel on_serial(const std::string& drive) {
+model::DriveModel on_serial(const std::string& drive) {
   ResolveInput input = kinco_axis();
   input.constants["rated_current_a"] = Rational(4);
   return resolved(shipped(drive), input);
 }
 
-std::vector<Quantity> lost(const DriveModel& there, const DriveModel& here) {
+std::vector<Quantity> lost(const model::DriveModel& there, const model::DriveModel& here) {
   std::vector<Quantity> out;
   for (const QuantityRow& row : quantity_table())
     if ((there.axes[0].supported & ~here.axes[0].supported & bit(row.quantity)) != 0) out.push_back(row.quantity);
@@ -43,8 +43,8 @@ TEST(KincoRtu, GivesWhatItsManualListsARegisterFor) {
 
 TEST(KincoRtu, TheSecondFaultWordHasNoRegister) {
   for (const std::string drive : {"kinco-jd", "kinco-md"}) {
-    const DriveModel model = on_rtu(drive);
-    EXPECT_EQ(model.axes[0].fault_words[1], kNoObject);
+    const model::DriveModel model = on_rtu(drive);
+    EXPECT_EQ(model.axes[0].fault_words[1], model::kNoObject);
     EXPECT_EQ(binding(model, Quantity::vendor_error).bits.size(), 1U);
     EXPECT_EQ(model.alarms.size(), 16U) << drive << ": those of the first word";
   }
@@ -52,7 +52,7 @@ TEST(KincoRtu, TheSecondFaultWordHasNoRegister) {
 
 TEST(KincoRtu, TellsItsLine) {
   for (const std::string drive : {"kinco-jd", "kinco-md"}) {
-    const DriveModel model = on_rtu(drive);
+    const model::DriveModel model = on_rtu(drive);
     EXPECT_EQ(model.protocol, "modbus-rtu");
     EXPECT_TRUE(model.rtu.low_word_first);
     EXPECT_EQ(model.rtu.max_registers, 2);
@@ -63,9 +63,9 @@ TEST(KincoRtu, TellsItsLine) {
 }
 
 /// "statusword/1 position_actual/2"
-std::string resyncs(const DriveModel& model) {
+std::string resyncs(const model::DriveModel& model) {
   std::string out;
-  for (const ResyncRead& read : model.resync.candidates)
+  for (const model::ResyncRead& read : model.resync.candidates)
     out += (out.empty() ? "" : " ") + model.object(read.object).name + "/" + std::to_string(read.registers);
   return out;
 }
@@ -80,7 +80,7 @@ TEST(Rtu, ResynchronisationReadsDifferInLengthOnly) {
 }
 
 TEST(Rtu, FactsOfTheLineAreTheProfiles) {
-  const RtuProperties facts = resolved(valid_file("virtual"), one_axis("modbus-rtu")).rtu;
+  const model::RtuProperties facts = resolved(valid_file("virtual"), one_axis("modbus-rtu")).rtu;
   EXPECT_FALSE(facts.low_word_first);
   EXPECT_EQ(facts.max_registers, 8);
   EXPECT_THAT(facts.runs, ElementsAre(Pair(10, 13), Pair(100, 109)));
@@ -91,4 +91,4 @@ TEST(Rtu, FactsOfTheLineAreTheProfiles) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -2,13 +2,13 @@
 // Units of an axis: units per revolution, inversion, torque by rated current, composed bits.
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 TEST(ResolvedScale, UnitsPerRevolutionMayBeAFraction) {
   ResolveInput input = kinco_axis();
   input.axes[0].units_per_rev = Rational(60000, 37);  // a 37:12 gear with 5 mm pitch, in um
-  const DriveModel model = resolved(shipped("kinco-jd"), input);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), input);
   EXPECT_EQ(binding(model, Quantity::target_position).raw_per_unit, Rational(37, 6));
   EXPECT_EQ(sent(model, Quantity::target_position, 60000), 370000);
   EXPECT_EQ(sent(model, Quantity::target_position, 1), 6);
@@ -16,14 +16,14 @@ TEST(ResolvedScale, UnitsPerRevolutionMayBeAFraction) {
 
 TEST(ResolvedScale, TorqueNeedsTheRatedCurrent) {
   ResolveInput input = kinco_axis();
-  const DriveModel without = resolved(shipped("kinco-jd"), input);
+  const model::DriveModel without = resolved(shipped("kinco-jd"), input);
   EXPECT_EQ(without.axes[0].binding(Quantity::torque_actual), nullptr);
   EXPECT_FALSE(without.axes[0].command(Command::run_torque));
   EXPECT_EQ(without.axes[0].supported_modes & 0x0008, 0) << "torque mode without a torque set-point";
   EXPECT_EQ(without.axes[0].zero_before_enable.size(), 3U) << "its current set-points are made 0 all the same";
 
   input.constants["rated_current_a"] = Rational(4);
-  const DriveModel model = resolved(shipped("kinco-jd"), input);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), input);
   // 100.0 % of 4 A rms: 4 * 1.414 * 2048 / 27.5 = 421.217...
   EXPECT_EQ(sent(model, Quantity::target_torque, 1000), 421);
   EXPECT_EQ(sent(model, Quantity::max_torque, 1000), 421);
@@ -35,7 +35,7 @@ TEST(ResolvedScale, AnInvertedAxisNegatesWhatHasADirectionAndNothingElse) {
   ResolveInput input = kinco_axis();
   input.constants["rated_current_a"] = Rational(4);
   input.axes[0].inverted = true;
-  const DriveModel model = resolved(shipped("kinco-jd"), input);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), input);
   for (const Quantity q :
        {Quantity::position_actual, Quantity::velocity_actual, Quantity::torque_actual, Quantity::current_actual,
         Quantity::following_error, Quantity::target_position, Quantity::target_velocity, Quantity::target_torque,
@@ -52,12 +52,12 @@ TEST(ResolvedScale, AnInvertedAxisNegatesWhatHasADirectionAndNothingElse) {
 TEST(ResolvedScale, AnInvertedAxisSwapsItsLimits) {
   ResolveInput input = kinco_axis();
   input.axes[0].inverted = true;
-  const DriveModel model = resolved(shipped("kinco-jd"), input);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), input);
   EXPECT_EQ(model.object(binding(model, Quantity::position_limit_min).object).name, "position_limit_positive");
   EXPECT_EQ(model.object(binding(model, Quantity::position_limit_max).object).name, "position_limit_negative");
-  const std::vector<BitField>& bits = binding(model, Quantity::digital_inputs).bits;
+  const std::vector<model::BitField>& bits = binding(model, Quantity::digital_inputs).bits;
   const auto target_of = [&](const std::string& object, std::uint8_t from) {
-    for (const BitField& field : bits)
+    for (const model::BitField& field : bits)
       if (model.object(field.object).name == object && field.from == from) return static_cast<int>(field.to);
     return -1;
   };
@@ -69,19 +69,19 @@ TEST(ResolvedScale, AnInvertedAxisSwapsItsLimits) {
 }
 
 TEST(ResolvedScale, ErrorCodeComesFromTheAlarmTableAndNoObject) {
-  const DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
-  const Binding& code = binding(model, Quantity::error_code);
-  EXPECT_EQ(code.object, kNoObject);
+  const model::DriveModel model = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::Binding& code = binding(model, Quantity::error_code);
+  EXPECT_EQ(code.object, model::kNoObject);
   EXPECT_TRUE(code.bits.empty());
   EXPECT_NE(model.axes[0].supported & bit(Quantity::error_code), 0U);
 }
 
 TEST(ResolvedScale, BindingsAreInTheOrderOfTheQuantitiesAndFoundByNumber) {
-  const DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
-  const AxisModel& axis = model.axes[0];
+  const model::DriveModel model = resolved(shipped("kinco-md"), kinco_axis());
+  const model::AxisModel& axis = model.axes[0];
   std::uint32_t seen = 0;
   for (std::size_t i = 0; i < axis.bindings.size(); ++i) {
-    const Binding& bound = axis.bindings[i];
+    const model::Binding& bound = axis.bindings[i];
     EXPECT_EQ(axis.binding(bound.quantity), &bound);
     EXPECT_TRUE(i == 0 || axis.bindings[i - 1].quantity < bound.quantity);
     seen |= bit(bound.quantity);
@@ -92,4 +92,4 @@ TEST(ResolvedScale, BindingsAreInTheOrderOfTheQuantitiesAndFoundByNumber) {
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,20 +4,20 @@
 
 #include "tests/profiles/resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using testing::ElementsAre;
 using testing::Pair;
 
-DriveModel virtual_drive() { return resolved(valid_file("virtual"), one_axis("modbus-rtu")); }
+model::DriveModel virtual_drive() { return resolved(valid_file("virtual"), one_axis("modbus-rtu")); }
 
 TEST(VirtualDrive, HasAStatuswordAControlwordAndAModeThatTheGatewayMakes) {
-  const DriveModel model = virtual_drive();
-  const AxisModel& axis = model.axes[0];
-  const std::vector<ObjectId> emulated{axis.statusword, axis.controlword, axis.mode};
+  const model::DriveModel model = virtual_drive();
+  const model::AxisModel& axis = model.axes[0];
+  const std::vector<model::ObjectId> emulated{axis.statusword, axis.controlword, axis.mode};
   EXPECT_THAT(names(model, emulated), ElementsAre("statusword", "controlword", "mode"));
-  for (const ObjectId id : emulated) {
+  for (const model::ObjectId id : emulated) {
     EXPECT_TRUE(model.object(id).emulated);
     EXPECT_TRUE(model.object(id).readable);
     EXPECT_EQ(model.object(id).slot, 0);
@@ -29,19 +29,19 @@ TEST(VirtualDrive, HasAStatuswordAControlwordAndAModeThatTheGatewayMakes) {
   for (std::size_t i = 0; i < model.objects.size(); ++i)
     EXPECT_EQ(model.objects[i].emulated, std::find(emulated.begin(), emulated.end(), i) != emulated.end())
         << model.objects[i].name;
-  EXPECT_EQ(model.find({0, 0}), kNoObject) << "they have no address of the drive";
+  EXPECT_EQ(model.find({0, 0}), model::kNoObject) << "they have no address of the drive";
 }
 
 TEST(VirtualDrive, SupportsWhatTheGatewayMakes) {
-  const DriveModel model = virtual_drive();
-  const AxisModel& axis = model.axes[0];
+  const model::DriveModel model = virtual_drive();
+  const model::AxisModel& axis = model.axes[0];
   for (const Quantity q : {Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode})
     EXPECT_NE(axis.supported & bit(q), 0U) << row(q).name;
   EXPECT_EQ(axis.writable & bit(Quantity::statusword), 0U);
   EXPECT_NE(axis.writable & bit(Quantity::controlword), 0U);
   EXPECT_NE(axis.writable & bit(Quantity::mode), 0U);
-  EXPECT_EQ(binding(model, Quantity::statusword).poll, PollClass::fast);
-  EXPECT_EQ(binding(model, Quantity::mode_display).poll, PollClass::fast);
+  EXPECT_EQ(binding(model, Quantity::statusword).poll, model::PollClass::fast);
+  EXPECT_EQ(binding(model, Quantity::mode_display).poll, model::PollClass::fast);
   EXPECT_EQ(binding(model, Quantity::mode_display).object, axis.mode);
   EXPECT_EQ(axis.mode_display, axis.mode);
   EXPECT_TRUE(axis.cia402.setpoint_acknowledge);
@@ -50,15 +50,15 @@ TEST(VirtualDrive, SupportsWhatTheGatewayMakes) {
 }
 
 TEST(VirtualDrive, ItsStateIsEmulatedFromTheFaultFirst) {
-  const DriveModel model = virtual_drive();
+  const model::DriveModel model = virtual_drive();
   EXPECT_THAT(names(model, model.axes[0].state_sources), ElementsAre("fault_code", "run_state"));
-  const DriveModel kinco = resolved(shipped("kinco-jd"), kinco_axis());
+  const model::DriveModel kinco = resolved(shipped("kinco-jd"), kinco_axis());
   EXPECT_THAT(names(kinco, kinco.axes[0].state_sources), ElementsAre("statusword"));
   EXPECT_FALSE(kinco.axes[0].virtual_axis);
 }
 
 TEST(VirtualDrive, TellsItsMachineWhatItGoesBy) {
-  const DriveModel model = virtual_drive();
+  const model::DriveModel model = virtual_drive();
   const auto& facts = model.axes[0].virtual_axis;
   ASSERT_TRUE(facts);
   EXPECT_EQ(model.object(facts->fault.object).name, "fault_code");
@@ -77,7 +77,7 @@ TEST(VirtualDrive, TellsItsMachineWhatItGoesBy) {
 TEST(VirtualDrive, OfTwoMotorsHasObjectsForEach) {
   ResolveInput input = one_axis("modbus-rtu");
   input.axes.emplace_back();
-  const DriveModel model = resolved(valid_file("virtual-pair"), input);
+  const model::DriveModel model = resolved(valid_file("virtual-pair"), input);
   ASSERT_EQ(model.axes.size(), 2U);
   EXPECT_THAT(names(model, {model.axes[0].statusword, model.axes[1].statusword, model.axes[1].mode}),
               ElementsAre("A.statusword", "B.statusword", "B.mode"));
@@ -88,8 +88,8 @@ TEST(VirtualDrive, OfTwoMotorsHasObjectsForEach) {
 }
 
 TEST(VirtualDrive, HomingMethodsAreTranslatedBothWays) {
-  const DriveModel model = virtual_drive();
-  const Binding& method = binding(model, Quantity::homing_method);
+  const model::DriveModel model = virtual_drive();
+  const model::Binding& method = binding(model, Quantity::homing_method);
   EXPECT_THAT(method.codes, ElementsAre(Pair(17, 3), Pair(18, 2), Pair(35, 4)));
   EXPECT_EQ(method.limits, (Range{17, 35}));
   EXPECT_EQ(method.to_register(2), 18);
@@ -100,19 +100,19 @@ TEST(VirtualDrive, HomingMethodsAreTranslatedBothWays) {
 }
 
 TEST(VirtualDrive, TakesAPositionByValueAndNeedsNoModeForIt) {
-  const DriveModel model = virtual_drive();
+  const model::DriveModel model = virtual_drive();
   const auto& command = model.axes[0].command(Command::set_position);
   ASSERT_TRUE(command);
   EXPECT_FALSE(command->zero_only);
   ASSERT_EQ(command->steps.size(), 2U);
-  EXPECT_EQ(command->steps[0].source, Step::Source::set_position);
+  EXPECT_EQ(command->steps[0].source, model::Step::Source::set_position);
   EXPECT_EQ(command->steps[0].quantity, Quantity::position_actual);
   EXPECT_EQ(model.object(command->steps[0].object).name, "new_position");
-  EXPECT_EQ(command->steps[1].source, Step::Source::literal);
+  EXPECT_EQ(command->steps[1].source, model::Step::Source::literal);
 }
 
 TEST(VirtualDrive, OnlyRunVelocityRepeatsOnChange) {
-  const DriveModel model = virtual_drive();
+  const model::DriveModel model = virtual_drive();
   for (std::uint16_t number = 1; number <= kLastCommand; ++number) {
     const auto& command = model.axes[0].commands[number];
     const bool repeats = command && command->repeat_on_change;
@@ -122,13 +122,14 @@ TEST(VirtualDrive, OnlyRunVelocityRepeatsOnChange) {
 }
 
 TEST(VirtualDrive, AlarmsByValueKeepTheirOrder) {
-  const DriveModel model = virtual_drive();
+  const model::DriveModel model = virtual_drive();
   ASSERT_EQ(model.alarms.size(), 2U);
   EXPECT_EQ(model.alarms[0].value, 14U);
   EXPECT_EQ(model.alarms[0].code, 0x3210);
   EXPECT_EQ(model.alarms[1].value, 10U);
-  for (const AlarmRow& row : resolved(shipped("kinco-jd"), kinco_axis()).alarms) EXPECT_FALSE(row.value) << row.text;
+  for (const model::AlarmRow& row : resolved(shipped("kinco-jd"), kinco_axis()).alarms)
+    EXPECT_FALSE(row.value) << row.text;
 }
 
 }  // namespace
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

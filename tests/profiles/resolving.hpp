@@ -14,7 +14,7 @@
 #include "tests/places.hpp"
 #include "tests/stage/profile_once.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 inline std::string shipped(const std::string& name) { return test::source_path("schemas/drives/") + name + ".json"; }
 inline std::string valid_file(const std::string& name) {
@@ -42,18 +42,18 @@ inline ResolveInput kinco_axis() {
   return input;
 }
 
-inline DriveModel resolved(const LoadedProfile& loaded, const ResolveInput& input) {
+inline model::DriveModel resolved(const LoadedProfile& loaded, const ResolveInput& input) {
   EXPECT_EQ(text(loaded.faults), "");
   auto result = resolve(loaded, input);
   if (const auto* faults = std::get_if<std::vector<Fault>>(&result)) {
     ADD_FAILURE() << text(*faults);
     return {};
   }
-  return std::get<DriveModel>(std::move(result));
+  return std::get<model::DriveModel>(std::move(result));
 }
 
 /// Of a profile in the source folder.
-inline DriveModel resolved(const std::string& path, const ResolveInput& input) {
+inline model::DriveModel resolved(const std::string& path, const ResolveInput& input) {
   return resolved(test::profile_once(path), input);
 }
 
@@ -64,15 +64,15 @@ inline std::vector<Fault> refused(const std::string& path, const ResolveInput& i
   return faults == nullptr ? std::vector<Fault>{} : *faults;
 }
 
-inline const Binding& binding(const DriveModel& model, Quantity quantity) {
-  const Binding* found = model.axes.at(0).binding(quantity);
+inline const model::Binding& binding(const model::DriveModel& model, Quantity quantity) {
+  const model::Binding* found = model.axes.at(0).binding(quantity);
   if (found == nullptr) throw std::runtime_error("quantity not supported");
   return *found;
 }
 
-inline std::vector<std::string> names(const DriveModel& model, const std::vector<ObjectId>& ids) {
+inline std::vector<std::string> names(const model::DriveModel& model, const std::vector<model::ObjectId>& ids) {
   std::vector<std::string> out;
-  for (const ObjectId id : ids) out.push_back(model.object(id).name);
+  for (const model::ObjectId id : ids) out.push_back(model.object(id).name);
   return out;
 }
 
@@ -101,25 +101,25 @@ inline void check_row(const Object& object, const nlohmann::json& row) {
   }
 }
 
-inline std::string text(const DriveModel& model, const Condition& condition) {
+inline std::string text(const model::DriveModel& model, const model::Condition& condition) {
   std::string out = model.object(condition.object).name;
   if (condition.mask != 0) out += "&" + std::to_string(condition.mask);
-  out += condition.test == Condition::Test::equals ? "==" : "!=";
+  out += condition.test == model::Condition::Test::equals ? "==" : "!=";
   for (const std::int64_t value : condition.values) out += std::to_string(value);
   return out;
 }
 
 /// "A.on=1, wait A.fault&1==0": a "?" where a wait may run out, "must" where it is a require.
-inline std::string text(const DriveModel& model, const Steps& steps) {
+inline std::string text(const model::DriveModel& model, const model::Steps& steps) {
   std::string out;
-  for (const Step& step : steps) {
+  for (const model::Step& step : steps) {
     out += out.empty() ? "" : ", ";
-    const std::string until = step.verb == Step::Verb::write ? "" : text(model, step.until);
-    if (step.verb == Step::Verb::wait)
+    const std::string until = step.verb == model::Step::Verb::write ? "" : text(model, step.until);
+    if (step.verb == model::Step::Verb::wait)
       out += "wait " + until + (step.optional ? "?" : "");
-    else if (step.verb == Step::Verb::require)
+    else if (step.verb == model::Step::Verb::require)
       out += "must " + until;
-    else if (step.source == Step::Source::quantity)
+    else if (step.source == model::Step::Source::quantity)
       out += model.object(step.object).name + "=" + std::string(row(step.quantity).name);
     else
       out += model.object(step.object).name + "=" + std::to_string(step.literal);
@@ -128,9 +128,9 @@ inline std::string text(const DriveModel& model, const Steps& steps) {
 }
 
 /// What a write of this register value sends to the drive.
-inline std::optional<std::int64_t> sent(const DriveModel& model, Quantity quantity, std::int64_t value) {
-  const Binding& bound = binding(model, quantity);
+inline std::optional<std::int64_t> sent(const model::DriveModel& model, Quantity quantity, std::int64_t value) {
+  const model::Binding& bound = binding(model, quantity);
   return bound.to_raw(value, model.object(bound.object));
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -18,9 +18,9 @@
 namespace axisgate::test {
 namespace {
 
-std::vector<modbus_rtu::RtuNode> nodes_of(const std::vector<drive::DriveModel>& models) {
+std::vector<modbus_rtu::RtuNode> nodes_of(const std::vector<model::DriveModel>& models) {
   std::vector<modbus_rtu::RtuNode> nodes;
-  for (const drive::DriveModel& model : models) {
+  for (const model::DriveModel& model : models) {
     nodes.push_back({.node = model.node,
                      .low_word_first = model.rtu.low_word_first,
                      .error_functions = model.rtu.error_functions,
@@ -40,16 +40,16 @@ std::unique_ptr<Link> link_with(ManualRuntime& runtime, const Drives& drives, co
 }
 
 /// All drives of the line; they are of one kind.
-std::vector<drive::DriveModel> models_on(const GatewayStage::Line& line, const std::string& adapter) {
-  std::vector<drive::DriveModel> models;
+std::vector<model::DriveModel> models_on(const GatewayStage::Line& line, const std::string& adapter) {
+  std::vector<model::DriveModel> models;
   const auto add = [&](const auto& drives) {
     for (const auto& staged : drives) models.push_back(model_on(staged, line));
   };
-  if (app::adapter::on_can(adapter))
+  if (config::adapter::on_can(adapter))
     add(line.can_drives);
   else if (adapter == "modbus-rtu")
     add(line.rtu_drives);
-  else if (app::adapter::keya_serial(adapter))
+  else if (config::adapter::keya_serial(adapter))
     add(line.keya_drives);
   else
     add(line.drives);
@@ -58,21 +58,21 @@ std::vector<drive::DriveModel> models_on(const GatewayStage::Line& line, const s
 }
 
 struct Configured {
-  app::Config config;
-  app::Models models;
+  config::Config config;
+  compose::Models models;
 };
 
 Configured configured(const std::vector<GatewayStage::Line>& lines) {
   Configured out;
   for (const GatewayStage::Line& line : lines) {
-    app::BusConfig bus = bus_on(line);
+    config::BusConfig bus = bus_on(line);
     const auto& of_line = out.models.emplace_back(models_on(line, bus.adapter));
     for (std::size_t d = 0; d < bus.drives.size(); ++d) bus.drives[d].node = of_line[d].node;
     out.config.buses.push_back(std::move(bus));
   }
-  app::ConfigFaults faults("stage");
-  app::settle_rtu_buses(out.config, out.models, faults);
-  app::settle_keya_buses(out.config, out.models, faults);
+  config::ConfigFaults faults("stage");
+  config::settle_rtu_buses(out.config, out.models, faults);
+  config::settle_keya_buses(out.config, out.models, faults);
   if (!faults.faults().empty()) throw std::runtime_error(text(faults.faults().front()));
   return out;
 }
@@ -92,19 +92,19 @@ GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
 GatewayStage::LinkOfLine GatewayStage::link_of(const Line& line, std::uint64_t seed) {
   LinkOfLine made;
   const std::string adapter = bus_on(line).adapter;
-  if (app::adapter::on_can(adapter))
+  if (config::adapter::on_can(adapter))
     made.can = link_with<CanLinkSim>(runtime_, line.can_drives, line.can_options, seed);
   else if (adapter == "modbus-rtu")
     made.rtu = link_with<RtuLinkSim>(runtime_, line.rtu_drives, line.rtu_options, seed);
-  else if (app::adapter::keya_serial(adapter))
+  else if (config::adapter::keya_serial(adapter))
     made.keya = link_with<KeyaLinkSim>(runtime_, line.keya_drives, line.keya_options, seed);
   else
     made.kinco = link_with<SimLink>(runtime_, line.drives, line.options, seed);
   return made;
 }
 
-std::unique_ptr<bus::Wire> GatewayStage::wire_on(const app::BusConfig& bus,
-                                                 const std::vector<drive::DriveModel>& drives) {
+std::unique_ptr<bus::Wire> GatewayStage::wire_on(const config::BusConfig& bus,
+                                                 const std::vector<model::DriveModel>& drives) {
   const auto found = std::ranges::find(lines_, bus.name, &Line::name);
   const LinkOfLine& link = links_.at(static_cast<std::size_t>(found - lines_.begin()));
   if (link.kinco) {
@@ -112,7 +112,7 @@ std::unique_ptr<bus::Wire> GatewayStage::wire_on(const app::BusConfig& bus,
                                               log_);
   }
   if (link.keya) {
-    const auto line = bus.adapter == app::adapter::kKeyaRs232 ? keya::KeyaLine::rs232 : keya::KeyaLine::rs485;
+    const auto line = bus.adapter == config::adapter::kKeyaRs232 ? keya::KeyaLine::rs232 : keya::KeyaLine::rs485;
     return keya::make_keya_serial_wire({bus.name, line, bus.baud}, std::make_unique<ByteEnd<KeyaLinkSim>>(*link.keya),
                                        runtime_, log_);
   }
@@ -122,16 +122,16 @@ std::unique_ptr<bus::Wire> GatewayStage::wire_on(const app::BusConfig& bus,
   }
   auto end = std::make_unique<CanEnd>(*link.can);
   if (bus.adapter == "canopen") {
-    return canopen::make_canopen_wire(app::canopen_settings(bus, drives), std::move(end), runtime_, log_);
+    return canopen::make_canopen_wire(compose::canopen_settings(bus, drives), std::move(end), runtime_, log_);
   }
   keya::KeyaCanSettings settings;
   settings.name = bus.name;
   settings.timeout = bus.timeout;
-  for (const drive::DriveModel& model : drives) settings.nodes.push_back(model.node);
+  for (const model::DriveModel& model : drives) settings.nodes.push_back(model.node);
   return keya::make_keya_can_wire(std::move(settings), std::move(end), runtime_, log_);
 }
 
-app::Gateway& GatewayStage::gateway() {
+compose::Gateway& GatewayStage::gateway() {
   if (!gateway_) throw std::logic_error("no gateway runs");
   return *gateway_;
 }
@@ -140,24 +140,26 @@ void GatewayStage::start() {
   if (gateway_) throw std::logic_error("a gateway runs already");
   auto [config, models] = configured(lines_);
   config_ = std::move(config);
-  gateway_ = std::make_unique<app::Gateway>(
+  gateway_ = std::make_unique<compose::Gateway>(
       config_, models, runtime_, log_,
-      [this](const app::BusConfig& bus, const std::vector<drive::DriveModel>& drives) { return wire_on(bus, drives); });
+      [this](const config::BusConfig& bus, const std::vector<model::DriveModel>& drives) {
+        return wire_on(bus, drives);
+      });
   gateway_->start();
 }
 
 std::shared_ptr<std::optional<GatewayStage::Reasons>> GatewayStage::begin_reload(
-    const std::function<void(app::Config&)>& change, std::function<Reasons()> last_word) {
+    const std::function<void(config::Config&)>& change, std::function<Reasons()> last_word) {
   Configured all = configured(lines_);
-  app::Config wanted = config_;
+  config::Config wanted = config_;
   change(wanted);
-  app::Models models;
-  for (const app::BusConfig& bus : wanted.buses) {
-    const auto found = std::ranges::find(all.config.buses, bus.name, &app::BusConfig::name);
+  compose::Models models;
+  for (const config::BusConfig& bus : wanted.buses) {
+    const auto found = std::ranges::find(all.config.buses, bus.name, &config::BusConfig::name);
     models.push_back(all.models.at(static_cast<std::size_t>(found - all.config.buses.begin())));
   }
   auto place = std::make_shared<std::optional<Reasons>>();
-  gateway().reload(app::plan_reload(config_, wanted), wanted, std::move(models), std::move(last_word),
+  gateway().reload(compose::plan_reload(config_, wanted), wanted, std::move(models), std::move(last_word),
                    [this, place, wanted](Reasons why_not) {
                      if (why_not.empty()) config_ = wanted;
                      *place = std::move(why_not);

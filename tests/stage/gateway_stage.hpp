@@ -20,14 +20,14 @@ namespace axisgate::test {
 /// One drive of a line: what it is, and what the configuration says of its axis.
 struct StageDrive {
   simulated::DriveOptions options{};
-  drive::ResolveAxis axis{};
+  profile::ResolveAxis axis{};
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
 };
 
 /// The same on a Modbus RTU line.
 struct RtuStageDrive {
   simulated::RtuDriveOptions options{};
-  drive::ResolveAxis axis{};
+  profile::ResolveAxis axis{};
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
   std::string profile{};                        ///< a file of the source folder; empty: the shipped one of its type
 };
@@ -35,20 +35,20 @@ struct RtuStageDrive {
 /// The same on a CAN bus.
 struct CanStageDrive {
   simulated::CanDriveOptions options{};
-  drive::ResolveAxis axis{};
+  profile::ResolveAxis axis{};
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
   /// 1018h as the configuration would have it: vendor, product, revision, serial.
   std::array<std::optional<std::uint32_t>, 4> identity{};
-  std::optional<drive::ResolveAxis> axis_b{};  ///< of a Keya: its motor B; none: that motor is nobody's axis
-  std::string profile{};                       ///< of a CiA 402 drive; empty: its type's own
+  std::optional<profile::ResolveAxis> axis_b{};  ///< of a Keya: its motor B; none: that motor is nobody's axis
+  std::string profile{};                         ///< of a CiA 402 drive; empty: its type's own
 };
 
 /// A Keya on RS232 or RS485.
 struct KeyaStageDrive {
   simulated::KeyaOptions options{};
-  drive::ResolveAxis axis{};  ///< motor A
+  profile::ResolveAxis axis{};  ///< motor A
   std::map<std::string, Rational> constants{};
-  std::optional<drive::ResolveAxis> axis_b{};  ///< none: motor B is nobody's axis
+  std::optional<profile::ResolveAxis> axis_b{};  ///< none: motor B is nobody's axis
 };
 
 class GatewayStage {
@@ -76,7 +76,7 @@ class GatewayStage {
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
 
   /// Throws while none runs, as axis() and what asks the gateway do.
-  [[nodiscard]] app::Gateway& gateway();
+  [[nodiscard]] compose::Gateway& gateway();
   /// Its process dies: nothing more is sent. Cables and drives live on. Sessions on it must end inside `others`, after
   /// the last frame and before the core is gone.
   void crash(const std::function<void()>& others = [] {});
@@ -86,7 +86,8 @@ class GatewayStage {
   /// The result appears in the returned place: reasons why not, or none.
   using Reasons = std::vector<std::string>;
   std::shared_ptr<std::optional<Reasons>> begin_reload(
-      const std::function<void(app::Config&)>& change, std::function<Reasons()> last_word = [] { return Reasons{}; });
+      const std::function<void(config::Config&)>& change,
+      std::function<Reasons()> last_word = [] { return Reasons{}; });
   [[nodiscard]] bool gateway_runs() const { return gateway_ != nullptr; }
   [[nodiscard]] ManualRuntime& runtime() { return runtime_; }
   [[nodiscard]] SimLink& link(std::size_t line) { return *links_.at(line).kinco; }
@@ -142,12 +143,12 @@ class GatewayStage {
     std::unique_ptr<KeyaLinkSim> keya;
   };
   [[nodiscard]] LinkOfLine link_of(const Line& line, std::uint64_t seed);
-  [[nodiscard]] std::unique_ptr<bus::Wire> wire_on(const app::BusConfig& bus,
-                                                   const std::vector<drive::DriveModel>& drives);
+  [[nodiscard]] std::unique_ptr<bus::Wire> wire_on(const config::BusConfig& bus,
+                                                   const std::vector<model::DriveModel>& drives);
   const std::vector<Line> lines_;
   std::vector<LinkOfLine> links_;
-  app::Config config_;  ///< of the gateway that runs
-  std::unique_ptr<app::Gateway> gateway_;
+  config::Config config_;  ///< of the gateway that runs
+  std::unique_ptr<compose::Gateway> gateway_;
 };
 
 /// A commissioned drive on a line of its own.

@@ -10,9 +10,9 @@
 
 namespace axisgate::test {
 
-[[nodiscard]] const drive::LoadedProfile& profile_once(const std::string& path);
+[[nodiscard]] const profile::LoadedProfile& profile_once(const std::string& path);
 
 /// The one that is shipped under this name.
-[[nodiscard]] const drive::LoadedProfile& shipped_profile(const std::string& name);
+[[nodiscard]] const profile::LoadedProfile& shipped_profile(const std::string& name);
 
 }  // namespace axisgate::test

@@ -19,16 +19,17 @@ struct Entry {
   std::string profile;
   std::string protocol;
   std::uint8_t node = 1;
-  std::vector<drive::ResolveAxis> axes;
+  std::vector<profile::ResolveAxis> axes;
   std::map<std::string, Rational> constants;
   std::array<std::optional<std::uint32_t>, 4> identity{};
 };
 
-drive::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
+model::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
   const bool own = entry.profile.ends_with(".json");
-  const drive::LoadedProfile& loaded = own ? profile_once(source_path(entry.profile)) : shipped_profile(entry.profile);
+  const profile::LoadedProfile& loaded =
+      own ? profile_once(source_path(entry.profile)) : shipped_profile(entry.profile);
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
-  drive::ResolveInput input;
+  profile::ResolveInput input;
   input.protocol = entry.protocol;
   input.node = entry.node;
   input.constants = std::move(entry.constants);
@@ -37,10 +38,10 @@ drive::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
   input.axes = std::move(entry.axes);
   LeaseRules off;
   off.on = false;
-  for (drive::ResolveAxis& axis : input.axes) axis.lease = line.lease.value_or(off);
-  auto model = drive::resolve(loaded, input);
-  if (auto* faults = std::get_if<std::vector<drive::Fault>>(&model)) throw std::runtime_error(text(faults->front()));
-  return std::get<drive::DriveModel>(std::move(model));
+  for (profile::ResolveAxis& axis : input.axes) axis.lease = line.lease.value_or(off);
+  auto model = profile::resolve(loaded, input);
+  if (auto* faults = std::get_if<std::vector<profile::Fault>>(&model)) throw std::runtime_error(text(faults->front()));
+  return std::get<model::DriveModel>(std::move(model));
 }
 
 void name_kinco(Entry& entry, simulated::KincoType type) {
@@ -51,7 +52,7 @@ void name_kinco(Entry& entry, simulated::KincoType type) {
 
 /// What the drive's parameters say is what its configuration says.
 void name_keya(Entry& entry, std::string protocol, const simulated::KeyaOptions& options,
-               const std::optional<drive::ResolveAxis>& axis_b) {
+               const std::optional<profile::ResolveAxis>& axis_b) {
   entry.profile = "keya-kydas4860-2e";
   entry.protocol = std::move(protocol);
   if (axis_b) entry.axes.push_back(*axis_b);
@@ -97,8 +98,8 @@ Entry entry_of(const CanStageDrive& staged) {
   return entry;
 }
 
-drive::ResolveAxis axis_named(AxisNumber number) {
-  drive::ResolveAxis axis;
+profile::ResolveAxis axis_named(AxisNumber number) {
+  profile::ResolveAxis axis;
   axis.number = number;
   axis.name = "axis " + std::to_string(number);
   return axis;
@@ -126,25 +127,25 @@ std::string adapter_of(const GatewayStage::Line& line) {
 
 }  // namespace
 
-drive::DriveModel model_on(const StageDrive& staged, const GatewayStage::Line& line) {
+model::DriveModel model_on(const StageDrive& staged, const GatewayStage::Line& line) {
   return resolved(entry_of(staged), line);
 }
-drive::DriveModel model_on(const RtuStageDrive& staged, const GatewayStage::Line& line) {
+model::DriveModel model_on(const RtuStageDrive& staged, const GatewayStage::Line& line) {
   return resolved(entry_of(staged), line);
 }
-drive::DriveModel model_on(const CanStageDrive& staged, const GatewayStage::Line& line) {
+model::DriveModel model_on(const CanStageDrive& staged, const GatewayStage::Line& line) {
   return resolved(entry_of(staged), line);
 }
-drive::DriveModel model_on(const KeyaStageDrive& staged, const GatewayStage::Line& line) {
+model::DriveModel model_on(const KeyaStageDrive& staged, const GatewayStage::Line& line) {
   return resolved(entry_of(staged, line), line);
 }
 
-app::BusConfig bus_on(const GatewayStage::Line& line) {
-  app::BusConfig bus;
+config::BusConfig bus_on(const GatewayStage::Line& line) {
+  config::BusConfig bus;
   bus.name = line.name;
   bus.adapter = adapter_of(line);
   const bool rtu = bus.adapter == "modbus-rtu";
-  const bool keya = app::adapter::keya(bus.adapter);
+  const bool keya = config::adapter::keya(bus.adapter);
   bus.timeout = line.timeout.value_or(rtu || keya ? Duration{} : std::chrono::milliseconds(100));
   bus.settle = line.drives.size() + line.rtu_drives.size() + line.keya_drives.size() > 1 ? std::chrono::milliseconds(20)
                                                                                          : Duration{};
@@ -152,10 +153,10 @@ app::BusConfig bus_on(const GatewayStage::Line& line) {
   bus.drives.resize(line.can_drives.size() + line.keya_drives.size() +
                     (rtu ? line.rtu_drives.size() : line.drives.size()));
   if (keya) {
-    app::default_keya_bus(bus);
+    config::default_keya_bus(bus);
     if (line.keya_options.baud != 0) bus.baud = line.keya_options.baud;
     if (bus.adapter == "keya-can" && line.can_options.bit_rate != 0) bus.bitrate = line.can_options.bit_rate;
-    if (bus.adapter != "keya-can") bus.min_gap = app::keya_gap(bus.baud);
+    if (bus.adapter != "keya-can") bus.min_gap = config::keya_gap(bus.baud);
     bus.poll_given = line.poll.has_value();
     if (line.poll) bus.poll = *line.poll;
   }

@@ -7,11 +7,11 @@
 
 namespace axisgate::test {
 
-[[nodiscard]] drive::DriveModel model_on(const StageDrive& staged, const GatewayStage::Line& line);
-[[nodiscard]] drive::DriveModel model_on(const RtuStageDrive& staged, const GatewayStage::Line& line);
-[[nodiscard]] drive::DriveModel model_on(const CanStageDrive& staged, const GatewayStage::Line& line);
-[[nodiscard]] drive::DriveModel model_on(const KeyaStageDrive& staged, const GatewayStage::Line& line);
+[[nodiscard]] model::DriveModel model_on(const StageDrive& staged, const GatewayStage::Line& line);
+[[nodiscard]] model::DriveModel model_on(const RtuStageDrive& staged, const GatewayStage::Line& line);
+[[nodiscard]] model::DriveModel model_on(const CanStageDrive& staged, const GatewayStage::Line& line);
+[[nodiscard]] model::DriveModel model_on(const KeyaStageDrive& staged, const GatewayStage::Line& line);
 
-[[nodiscard]] app::BusConfig bus_on(const GatewayStage::Line& line);
+[[nodiscard]] config::BusConfig bus_on(const GatewayStage::Line& line);
 
 }  // namespace axisgate::test

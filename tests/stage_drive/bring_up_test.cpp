@@ -89,7 +89,7 @@ TEST(Restart, TooQuickToGoOfflineStillLosesTheHoming) {
 // --- The setup list, against a model made here ---------------------------------------------------------------------
 
 struct SetupRun {
-  drive::DriveModel model;
+  model::DriveModel model;
   drive::ObjectStore store{0};
   std::int64_t held = 0;  ///< what the pretended drive holds
   bool refuse_writes = false, ignore_writes = false;

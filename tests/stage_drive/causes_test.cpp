@@ -26,8 +26,8 @@ class NamedBy : public testing::Test {
     store_.begin_exchange();
     image_.link_state = LinkState::online;
   }
-  [[nodiscard]] const drive::DriveModel& model() { return rig_.stage.gateway().drive_of(1)->axis(0).core().drive; }
-  drive::ObjectId object(std::uint16_t index) { return model().find({index, 0}); }
+  [[nodiscard]] const model::DriveModel& model() { return rig_.stage.gateway().drive_of(1)->axis(0).core().drive; }
+  model::ObjectId object(std::uint16_t index) { return model().find({index, 0}); }
   void read(std::uint16_t index, std::int64_t number) {
     store_.begin_exchange();
     store_.read(object(index), number, turn_.now);

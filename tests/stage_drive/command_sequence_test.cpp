@@ -16,11 +16,11 @@ using Move = drive::CommandSequence::Move;
 /// The shipped model of a drive, and a table that answers for it.
 struct Table {
   Rig rig;
-  const drive::DriveModel& model;
+  const model::DriveModel& model;
   drive::ObjectStore store;
   drive::Turn turn{.now = Instant{} + 1h, .link = LinkState::online};
   drive::AxisCore core;
-  std::map<bus::ObjectAddress, std::uint32_t> held;
+  std::map<ObjectAddress, std::uint32_t> held;
   std::vector<bus::Exchange> sent;
 
   explicit Table(KincoType type)
@@ -31,7 +31,7 @@ struct Table {
     held[{0x6041, 0}] = 0x4637;  // enabled, target reached
     held[{0x6040, 0}] = 0x000F;
     held[{0x6060, 0}] = held[{0x6061, 0}] = 1;
-    for (drive::ObjectId id = 0; id < model.objects.size(); ++id) {
+    for (model::ObjectId id = 0; id < model.objects.size(); ++id) {
       store.begin_exchange();
       store.read(id, model.object(id).number(held[model.object(id).address]), turn.now);
     }
@@ -41,7 +41,7 @@ struct Table {
       held[exchange.object] = exchange.raw;
       return {};
     }
-    const drive::ObjectId id = model.find(exchange.object);
+    const model::ObjectId id = model.find(exchange.object);
     store.read(id, model.object(id).number(held[exchange.object]), turn.now);
     bus::ExchangeResult result;
     result.fields.push_back({exchange.object, model.object(id).size, held[exchange.object]});

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using drive::DriveControl;
-using drive::ObjectId;
+using model::ObjectId;
 
 constexpr Duration kPeriod = 800ms;
 constexpr Instant kNow = Instant{} + 1h;
@@ -49,7 +49,7 @@ struct Told {
     return {model.node, bus::Access::write, model.object(id(name)).address, 4, raw};
   }
 
-  drive::DriveModel model;
+  model::DriveModel model;
   drive::ObjectStore store{model.objects};
   drive::Turn in_sight{.now = kNow, .link = LinkState::online};
   std::vector<drive::AxisCore> cores;
@@ -57,7 +57,7 @@ struct Told {
 };
 
 TEST(DriveControl, ADriveThatNeedsNeitherIsNotConcerned) {
-  const drive::DriveModel model = keya_model({});
+  const model::DriveModel model = keya_model({});
   drive::ObjectStore store(model.objects);
   EXPECT_FALSE(DriveControl(model, store).concerned());
   EXPECT_TRUE(Told(Speech::single).control.concerned());

@@ -18,13 +18,13 @@ using Answer = std::shared_ptr<std::optional<BatchResult>>;
 
 class Joined : public testing::TestWithParam<Subject> {
  protected:
-  [[nodiscard]] const drive::ObjectDef& object_of(Quantity quantity) {
-    const drive::DriveModel& model = rig.stage.gateway().drive_of(1)->model();
-    const drive::ObjectId id = model.axes.front().binding(quantity)->object;
+  [[nodiscard]] const model::ObjectDef& object_of(Quantity quantity) {
+    const model::DriveModel& model = rig.stage.gateway().drive_of(1)->model();
+    const model::ObjectId id = model.axes.front().binding(quantity)->object;
     return model.object(id);
   }
   [[nodiscard]] WriteBatch reading(ClientId client, std::uint8_t size) {
-    const drive::ObjectDef& object = object_of(Quantity::position_actual);
+    const model::ObjectDef& object = object_of(Quantity::position_actual);
     WriteBatch batch;
     batch.client = client;
     batch.object = ObjectRequest{.index = object.address.index, .subindex = object.address.sub, .size = size};

@@ -179,19 +179,19 @@ TEST(KeyaFrames, AfterTheLinksReturnNothingThatWasToldBeforeIsToldAgain) {
 // --- The rule alone ------------------------------------------------------------------------------------------------
 
 struct Rule {
-  drive::DriveModel model = keya_model(composed());
+  model::DriveModel model = keya_model(composed());
   drive::ObjectStore store{model.objects};
   ControlFrame frame{model};
   std::vector<MotorShows> motors = std::vector<MotorShows>(2);
 
-  [[nodiscard]] drive::ObjectId id(const std::string& name) const {
+  [[nodiscard]] model::ObjectId id(const std::string& name) const {
     const auto at =
         std::find_if(model.objects.begin(), model.objects.end(), [&](const auto& o) { return o.name == name; });
-    return static_cast<drive::ObjectId>(at - model.objects.begin());
+    return static_cast<model::ObjectId>(at - model.objects.begin());
   }
   void told(const std::string& name, std::int64_t number) { store.acknowledged(id(name), number, Instant{} + 1h); }
   [[nodiscard]] std::optional<bus::Exchange> of(const std::string& name, std::int64_t number, bool stop = false) const {
-    const drive::ObjectDef& def = model.object(id(name));
+    const model::ObjectDef& def = model.object(id(name));
     return frame.complete({1, bus::Access::write, def.address, 4, static_cast<std::uint32_t>(number)}, store, motors,
                           stop);
   }

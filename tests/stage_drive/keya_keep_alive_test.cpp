@@ -270,11 +270,11 @@ TEST_P(KeyaKeepAlive, ASilentDriveIsSentNothing) {
 // --- The rule alone ------------------------------------------------------------------------------------------------
 
 TEST(KeepAliveRule, IsDueAtHalfThePeriodAfterTheNewestControlWriteOfItsMotor) {
-  const drive::DriveModel model = keya_model({.keep_alive = kKeepAlivePeriod});
+  const model::DriveModel model = keya_model({.keep_alive = kKeepAlivePeriod});
   const auto find = [&](const std::string& name) {
     const auto at =
         std::find_if(model.objects.begin(), model.objects.end(), [&](const auto& o) { return o.name == name; });
-    return static_cast<drive::ObjectId>(at - model.objects.begin());
+    return static_cast<model::ObjectId>(at - model.objects.begin());
   };
   drive::KeepAlive keep(model);
   const Instant start = Instant{} + 1h;
@@ -290,7 +290,7 @@ TEST(KeepAliveRule, IsDueAtHalfThePeriodAfterTheNewestControlWriteOfItsMotor) {
 }
 
 TEST(KeepAliveRule, AFrameOfBothMotorsCountsForBoth) {
-  const drive::DriveModel model = keya_model({.speech = Speech::composed, .keep_alive = kKeepAlivePeriod});
+  const model::DriveModel model = keya_model({.speech = Speech::composed, .keep_alive = kKeepAlivePeriod});
   drive::KeepAlive keep(model);
   const Instant start = Instant{} + 1h;
   keep.written(model.composed.front(), start);

@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Speeches, KeyaUnderLoad, testing::Values(Speech::single
 /// Clients that never rest: each asks anew as soon as it has its answer.
 class Crowd {
  public:
-  Crowd(KeyaRig& rig, int clients, std::function<std::pair<bus::AxisSlot, WriteBatch>(int client, int round)> ask)
+  Crowd(KeyaRig& rig, int clients, std::function<std::pair<AxisSlot, WriteBatch>(int client, int round)> ask)
       : rig_(rig), ask_(std::move(ask)), waiting_(static_cast<std::size_t>(clients)) {}
   void run(Duration time) {
     const Instant end = rig_.runtime.now() + time;
@@ -38,7 +38,7 @@ class Crowd {
 
  private:
   KeyaRig& rig_;
-  std::function<std::pair<bus::AxisSlot, WriteBatch>(int, int)> ask_;
+  std::function<std::pair<AxisSlot, WriteBatch>(int, int)> ask_;
   std::vector<std::shared_ptr<std::optional<BatchResult>>> waiting_;
 };
 
@@ -55,9 +55,9 @@ TEST_P(KeyaUnderLoad, ThirtyTwoBusyClientsOfTheOtherMotorDelayItByNothingThatCou
   rig.enable_and_run(0);
   rig.enable_and_run(1);
   rig.mark();
-  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, WriteBatch> {
-    if (client % 4 == 0) return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + round % 50), 4)};
-    return {bus::AxisSlot{1},
+  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<AxisSlot, WriteBatch> {
+    if (client % 4 == 0) return {AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + round % 50), 4)};
+    return {AxisSlot{1},
             KeyaRig::batch_of(Command::run_velocity, {{Quantity::target_velocity, (client + round % 10) * 10'000}})};
   });
   crowd.run(10s);
@@ -73,8 +73,8 @@ TEST_P(KeyaUnderLoad, ThirtyTwoBusyReadersDelayItByNothingThatCounts) {
   rig.online();
   rig.enable_and_run(0);
   rig.mark();
-  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<bus::AxisSlot, WriteBatch> {
-    return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + 100 * client + round % 100), 4)};
+  Crowd crowd(rig, 32, [](int client, int round) -> std::pair<AxisSlot, WriteBatch> {
+    return {AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + 100 * client + round % 100), 4)};
   });
   crowd.run(10s);
   EXPECT_LE(longest_gap(rig.heard(1)), kKeepAlivePeriod);
@@ -86,8 +86,8 @@ TEST_P(KeyaUnderLoad, AQueueThatIsFullDoesNotKeepItFromItsTurn) {
   rig.online();
   rig.enable_and_run(0);
   rig.mark();
-  Crowd crowd(rig, 72, [](int client, int round) -> std::pair<bus::AxisSlot, WriteBatch> {
-    return {bus::AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + client), round % 2 == 0 ? 4 : 2)};
+  Crowd crowd(rig, 72, [](int client, int round) -> std::pair<AxisSlot, WriteBatch> {
+    return {AxisSlot{0}, mailbox_read(static_cast<std::uint16_t>(0x3000 + client), round % 2 == 0 ? 4 : 2)};
   });
   crowd.run(2s);
   EXPECT_LE(longest_gap(rig.heard(1)), kKeepAlivePeriod);

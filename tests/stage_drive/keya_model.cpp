@@ -6,23 +6,22 @@ namespace axisgate::test {
 namespace {
 
 using namespace std::chrono_literals;
-using drive::AxisModel;
-using drive::Binding;
-using drive::CommandDef;
-using drive::Condition;
-using drive::DriveModel;
-using drive::ObjectDef;
-using drive::ObjectId;
-using drive::PollClass;
-using drive::Step;
-using drive::Steps;
+using model::AxisModel;
+using model::Binding;
+using model::CommandDef;
+using model::Condition;
+using model::DriveModel;
+using model::ObjectDef;
+using model::ObjectId;
+using model::PollClass;
+using model::Step;
+using model::Steps;
 
 struct Maker {
   DriveModel model;
   const KeyaOptions& options;
 
-  ObjectId add(const std::string& name, bus::AxisSlot slot, bus::ObjectAddress address, std::uint8_t size,
-               bool is_signed) {
+  ObjectId add(const std::string& name, AxisSlot slot, ObjectAddress address, std::uint8_t size, bool is_signed) {
     ObjectDef def;
     def.name = name;
     def.slot = slot;
@@ -33,13 +32,13 @@ struct Maker {
     return static_cast<ObjectId>(model.objects.size() - 1);
   }
   ObjectDef& at(ObjectId id) { return model.objects[id]; }
-  ObjectId command(const std::string& name, bus::AxisSlot slot, std::uint16_t index, std::uint8_t motor) {
+  ObjectId command(const std::string& name, AxisSlot slot, std::uint16_t index, std::uint8_t motor) {
     const ObjectId id = add(name, slot, {index, motor}, 4, true);
     at(id).readable = false;
     at(id).writable = at(id).trigger = true;
     return id;
   }
-  ObjectId emulated(const std::string& name, bus::AxisSlot slot, std::uint8_t size) {
+  ObjectId emulated(const std::string& name, AxisSlot slot, std::uint8_t size) {
     const ObjectId id = add(name, slot, {}, size, size == 1);
     at(id).emulated = at(id).writable = true;
     return id;
@@ -82,13 +81,13 @@ Step wait_for(const Condition& condition) {
   return step;
 }
 
-Motor make_motor(Maker& make, bus::AxisSlot slot, bool configured) {
+Motor make_motor(Maker& make, AxisSlot slot, bool configured) {
   const std::string name = slot == 0 ? "A." : "B.";
   const auto number = static_cast<std::uint8_t>(slot + 1);
   const bool composed = make.options.speech == Speech::composed;
   const auto at = [&](std::uint8_t byte) { return static_cast<std::uint8_t>(slot * byte); };
   Motor out{};
-  const bus::AxisSlot owner = configured ? slot : bus::kNoAxis;
+  const AxisSlot owner = configured ? slot : kNoAxis;
   out.fault = make.add(name + "fault", owner, {kFaultQuery, 1, at(2)}, 2, false);
   out.speed = make.add(name + "speed", owner, {kSpeedQuery, 1, at(2)}, 2, true);
   out.position =
@@ -161,7 +160,7 @@ void make_commands(AxisModel& axis, const Motor& motor, bool composed) {
   if (has_mode(axis, 3)) give(axis, Command::run_velocity, {{}, {write(motor.velocity, Quantity::target_velocity)}});
 }
 
-AxisModel make_axis(Maker& make, bus::AxisSlot slot, const Motor& motor) {
+AxisModel make_axis(Maker& make, AxisSlot slot, const Motor& motor) {
   AxisModel axis;
   axis.number = static_cast<AxisNumber>(slot + 1);
   axis.name = slot == 0 ? "left" : "right";
@@ -188,7 +187,7 @@ AxisModel make_axis(Maker& make, bus::AxisSlot slot, const Motor& motor) {
   axis.binding_of.fill(-1);
   for (std::size_t i = 0; i < axis.bindings.size(); ++i)
     axis.binding_of[static_cast<std::size_t>(axis.bindings[i].quantity)] = static_cast<std::int16_t>(i);
-  drive::VirtualProperties facts;
+  model::VirtualProperties facts;
   facts.enabled = state(motor.fault, 0);
   facts.fault = facts.enabled;
   facts.fault.mask = 0x3FFE;
@@ -204,17 +203,17 @@ AxisModel make_axis(Maker& make, bus::AxisSlot slot, const Motor& motor) {
 
 }  // namespace
 
-drive::DriveModel keya_model(const KeyaOptions& options) {
+model::DriveModel keya_model(const KeyaOptions& options) {
   Maker make{{}, options};
   DriveModel& model = make.model;
   model.protocol = options.speech == Speech::composed ? "keya-rs232" : "keya-can";
   std::vector<Motor> motors;
-  for (bus::AxisSlot slot = 0; slot < 2; ++slot) motors.push_back(make_motor(make, slot, slot < options.axes));
-  const ObjectId temperature = make.add("temperature", bus::kNoAxis, {kTemperatureQuery, 1}, 2, true);
+  for (AxisSlot slot = 0; slot < 2; ++slot) motors.push_back(make_motor(make, slot, slot < options.axes));
+  const ObjectId temperature = make.add("temperature", kNoAxis, {kTemperatureQuery, 1}, 2, true);
   const ObjectId angle = make.add("A.angle", 0, {0x0700, 0}, 2, false);
   make.at(angle).readable = false;
   for (int i = 0; i < options.axes; ++i) {
-    const auto slot = static_cast<bus::AxisSlot>(i);
+    const auto slot = static_cast<AxisSlot>(i);
     AxisModel axis = make_axis(make, slot, motors[slot]);
     bind(axis, Quantity::drive_temperature, temperature, Rational(1, 10), PollClass::slow, false);
     axis.binding_of[static_cast<std::size_t>(Quantity::drive_temperature)] =

@@ -44,15 +44,15 @@ TEST_P(KeyaReads, EachQueryIsPolledOnceInItsPeriodHoweverManyAxesWantIt) {
 }
 
 TEST_P(KeyaReads, ThePlanCountsAQueryOnceInItsFastestClass) {
-  drive::DriveModel model = keya_model({.speech = GetParam()});
+  model::DriveModel model = keya_model({.speech = GetParam()});
   for (auto& axis : model.axes)
     for (auto& binding : axis.bindings)
-      if (binding.quantity == Quantity::motor_temperature && axis.number == 2) binding.poll = drive::PollClass::normal;
+      if (binding.quantity == Quantity::motor_temperature && axis.number == 2) binding.poll = model::PollClass::normal;
   std::map<std::pair<std::uint16_t, std::uint8_t>, int> seen;
   for (const auto& read : drive::planned_reads(model)) {
     ++seen[{read.exchange.object.index, read.exchange.object.sub}];
     if (read.exchange.object.index == kTemperatureQuery) {
-      EXPECT_EQ(read.poll_class, drive::PollClass::normal);
+      EXPECT_EQ(read.poll_class, model::PollClass::normal);
       EXPECT_EQ(read.exchange.more.size(), 2U) << "the drive's own and both motors'";
     }
   }
@@ -61,11 +61,11 @@ TEST_P(KeyaReads, ThePlanCountsAQueryOnceInItsFastestClass) {
 }
 
 TEST(KeyaReading, ValuesOfAnAnswerComeInTheOrderOfTheirBytesWhicheverIsAskedFor) {
-  const drive::DriveModel model = keya_model({});
+  const model::DriveModel model = keya_model({});
   const drive::ReadBlocks blocks(model);
   for (const std::uint8_t byte : {std::uint8_t{0}, std::uint8_t{2}}) {
     bus::Exchange exchange{1, bus::Access::read, {kFaultQuery, 1, byte}, 2, 0};
-    blocks.widen(exchange, [](drive::ObjectId) { return false; });
+    blocks.widen(exchange, [](model::ObjectId) { return false; });
     EXPECT_EQ(exchange.object.byte, 0);
     ASSERT_EQ(exchange.more.size(), 1U);
     EXPECT_EQ(exchange.more.front().object.byte, 2);
@@ -110,7 +110,7 @@ TEST(KeyaReading, AQueryThatTheDriveRefusesIsGivenUpWithAllItsValuesAndTheOthers
   rig.mark();
   rig.run(3s);
   EXPECT_EQ(rig.reads_of(kTemperatureQuery), 0U);
-  for (const bus::AxisSlot slot : {bus::AxisSlot{0}, bus::AxisSlot{1}}) {
+  for (const AxisSlot slot : {AxisSlot{0}, AxisSlot{1}}) {
     EXPECT_EQ(rig.axis(slot).supported & bit(Quantity::motor_temperature), 0U);
     EXPECT_EQ(rig.axis(slot).supported & bit(Quantity::drive_temperature), 0U);
     EXPECT_TRUE(rig.axis(slot)[Quantity::velocity_actual].valid);
@@ -135,12 +135,12 @@ TEST(KeyaReading, AQueryThatIsNotAnsweredIsAskedForWholeAgain) {
 }
 
 TEST(KeyaResync, ALostQueryOfOneMotorIsNotResolvedByTheSameQueryOfTheOther) {
-  const drive::DriveModel model = keya_model({});
-  drive::ResyncProperties facts;
+  const model::DriveModel model = keya_model({});
+  model::ResyncProperties facts;
   const auto find = [&](const std::string& name) {
     const auto at =
         std::find_if(model.objects.begin(), model.objects.end(), [&](const auto& o) { return o.name == name; });
-    return static_cast<drive::ObjectId>(at - model.objects.begin());
+    return static_cast<model::ObjectId>(at - model.objects.begin());
   };
   facts.candidates = {{find("A.fault"), 0}, {find("B.speed"), 0}};
   drive::Resync resync(facts, model.objects);

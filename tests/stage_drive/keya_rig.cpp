@@ -119,7 +119,7 @@ bus::ExchangeResult FakeKeya::answer(const bus::Exchange& exchange) {
       write(exchange.object, static_cast<std::int32_t>(exchange.raw));
     return out;
   }
-  const auto add = [&](const bus::ObjectAddress& object, std::uint8_t size) {
+  const auto add = [&](const ObjectAddress& object, std::uint8_t size) {
     if (const auto width = widths.find(object); width != widths.end()) size = width->second;
     out.fields.push_back({object, size, read(object)});
   };
@@ -128,7 +128,7 @@ bus::ExchangeResult FakeKeya::answer(const bus::Exchange& exchange) {
   return out;
 }
 
-std::uint32_t FakeKeya::read(const bus::ObjectAddress& object) const {
+std::uint32_t FakeKeya::read(const ObjectAddress& object) const {
   const auto number = [](double value) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(value)));
   };
@@ -146,7 +146,7 @@ std::uint32_t FakeKeya::read(const bus::ObjectAddress& object) const {
   }
 }
 
-void FakeKeya::write(const bus::ObjectAddress& object, std::int64_t value) {
+void FakeKeya::write(const ObjectAddress& object, std::int64_t value) {
   FakeMotor& motor = motors.at(object.sub - 1U);
   motor.commanded = runtime_.now();
   switch (object.index) {
@@ -220,7 +220,7 @@ void KeyaRig::online() {
   if (!run_until([&] { return axis(0).link_state == LinkState::online; })) throw std::runtime_error("never online");
 }
 
-std::shared_ptr<std::optional<BatchResult>> KeyaRig::begin(bus::AxisSlot slot, const WriteBatch& batch) {
+std::shared_ptr<std::optional<BatchResult>> KeyaRig::begin(AxisSlot slot, const WriteBatch& batch) {
   auto result = std::make_shared<std::optional<BatchResult>>();
   WriteBatch asked = batch;
   if (asked.start_by == kNever) asked.start_by = runtime.now() + 500ms;
@@ -230,37 +230,37 @@ std::shared_ptr<std::optional<BatchResult>> KeyaRig::begin(bus::AxisSlot slot, c
   return result;
 }
 
-BatchResult KeyaRig::ask(bus::AxisSlot slot, const WriteBatch& batch) {
+BatchResult KeyaRig::ask(AxisSlot slot, const WriteBatch& batch) {
   const auto result = begin(slot, batch);
   if (!run_until([&] { return result->has_value(); }, 10s)) throw std::runtime_error("no result");
   return **result;
 }
 
-BatchResult KeyaRig::word(bus::AxisSlot slot, std::uint16_t controlword) {
+BatchResult KeyaRig::word(AxisSlot slot, std::uint16_t controlword) {
   WriteBatch batch = batch_of(Command::none);
   batch.controlword = controlword;
   batch.single_controlword = true;
   return ask(slot, batch);
 }
 
-BatchResult KeyaRig::mailbox(bus::AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
+BatchResult KeyaRig::mailbox(AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
                              std::uint32_t data) {
   WriteBatch batch = batch_of(Command::none);
   batch.object = ObjectRequest{write, index, sub, size, data};
   return ask(slot, batch);
 }
 
-void KeyaRig::enable(bus::AxisSlot slot) {
+void KeyaRig::enable(AxisSlot slot) {
   if (code(command(slot, Command::enable)) != Errc::ok || !motor(slot).enabled || !enabled(slot))
     throw std::runtime_error("not enabled");
 }
 
-void KeyaRig::run_at(bus::AxisSlot slot, std::int64_t velocity) {
+void KeyaRig::run_at(AxisSlot slot, std::int64_t velocity) {
   if (code(ask(slot, batch_of(Command::run_velocity, {{Quantity::target_velocity, velocity}}))) != Errc::ok)
     throw std::runtime_error("does not run");
 }
 
-void KeyaRig::enable_and_run(bus::AxisSlot slot) {
+void KeyaRig::enable_and_run(AxisSlot slot) {
   enable(slot);
   run_at(slot, kRpm150);
 }
@@ -296,7 +296,7 @@ Duration longest_gap(const std::vector<Instant>& instants) {
 }
 
 std::optional<std::int64_t> KeyaRig::field(const bus::Exchange& exchange, std::uint16_t index, std::uint8_t motor) {
-  const bus::ObjectAddress wanted{index, motor};
+  const ObjectAddress wanted{index, motor};
   if (exchange.object == wanted) return static_cast<std::int32_t>(exchange.raw);
   for (const bus::Neighbour& more : exchange.more)
     if (more.object == wanted) return static_cast<std::int32_t>(more.raw);
@@ -312,11 +312,11 @@ WriteBatch KeyaRig::batch_of(Command command, std::initializer_list<Setpoint> se
   return batch;
 }
 
-drive::ObjectId KeyaRig::id(const std::string& object) const {
+model::ObjectId KeyaRig::id(const std::string& object) const {
   const auto& objects = drive->model().objects;
   const auto at = std::find_if(objects.begin(), objects.end(), [&](const auto& o) { return o.name == object; });
   if (at == objects.end()) throw std::runtime_error("no object " + object);
-  return static_cast<drive::ObjectId>(at - objects.begin());
+  return static_cast<model::ObjectId>(at - objects.begin());
 }
 
 }  // namespace axisgate::test

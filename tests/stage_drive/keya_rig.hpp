@@ -40,7 +40,7 @@ struct KeyaOptions {
   Duration unsolicited_every{};
   bool unsolicited = false;
 };
-[[nodiscard]] drive::DriveModel keya_model(const KeyaOptions& options);
+[[nodiscard]] model::DriveModel keya_model(const KeyaOptions& options);
 
 /// One motor: velocity at once, position at a thousand counts a millisecond.
 struct FakeMotor {
@@ -86,12 +86,12 @@ class FakeKeya final : public bus::Wire {
   /// Called when the drive has acted, before its answer.
   std::function<void(const bus::Exchange&)> acted;
   Duration watchdog = std::chrono::milliseconds(1000);
-  std::map<bus::ObjectAddress, std::uint8_t> widths;  ///< what it answers in another width than it is asked for
+  std::map<ObjectAddress, std::uint8_t> widths;  ///< what it answers in another width than it is asked for
 
  private:
   [[nodiscard]] bus::ExchangeResult answer(const bus::Exchange& exchange);
-  [[nodiscard]] std::uint32_t read(const bus::ObjectAddress& object) const;
-  void write(const bus::ObjectAddress& object, std::int64_t value);
+  [[nodiscard]] std::uint32_t read(const ObjectAddress& object) const;
+  void write(const ObjectAddress& object, std::int64_t value);
   void write_frame(const bus::Exchange& exchange);
 
   KeyaOptions options_;
@@ -110,22 +110,22 @@ class KeyaRig {
   explicit KeyaRig(KeyaOptions options = {});
 
   void online();
-  BatchResult ask(bus::AxisSlot slot, const WriteBatch& batch);
-  BatchResult command(bus::AxisSlot slot, Command command) { return ask(slot, batch_of(command)); }
-  BatchResult write(bus::AxisSlot slot, Quantity quantity, std::int64_t value) {
+  BatchResult ask(AxisSlot slot, const WriteBatch& batch);
+  BatchResult command(AxisSlot slot, Command command) { return ask(slot, batch_of(command)); }
+  BatchResult write(AxisSlot slot, Quantity quantity, std::int64_t value) {
     return ask(slot, batch_of(Command::none, {{quantity, value}}));
   }
-  BatchResult word(bus::AxisSlot slot, std::uint16_t controlword);
-  BatchResult mailbox(bus::AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
+  BatchResult word(AxisSlot slot, std::uint16_t controlword);
+  BatchResult mailbox(AxisSlot slot, bool write, std::uint16_t index, std::uint8_t sub, std::uint8_t size,
                       std::uint32_t data = 0);
   /// Enabled, and, with a velocity, running at it (0.001 rpm).
-  void enable(bus::AxisSlot slot);
-  void run_at(bus::AxisSlot slot, std::int64_t velocity);
-  void enable_and_run(bus::AxisSlot slot);  ///< at kRpm150
+  void enable(AxisSlot slot);
+  void run_at(AxisSlot slot, std::int64_t velocity);
+  void enable_and_run(AxisSlot slot);  ///< at kRpm150
   void run(Duration time);
   bool run_until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(5));
   /// What the drive is given to do, without waiting for it.
-  std::shared_ptr<std::optional<BatchResult>> begin(bus::AxisSlot slot, const WriteBatch& batch);
+  std::shared_ptr<std::optional<BatchResult>> begin(AxisSlot slot, const WriteBatch& batch);
 
   void mark() { marked_ = wire->sent.size(); }
   [[nodiscard]] std::vector<Sent> since_mark() const;
@@ -139,10 +139,10 @@ class KeyaRig {
 
   [[nodiscard]] static WriteBatch batch_of(Command command, std::initializer_list<Setpoint> setpoints = {});
   [[nodiscard]] static Errc code(const BatchResult& result) { return result.outcome.code; }
-  [[nodiscard]] const AxisImage& axis(bus::AxisSlot slot) const { return images_[slot]; }
+  [[nodiscard]] const AxisImage& axis(AxisSlot slot) const { return images_[slot]; }
   [[nodiscard]] FakeMotor& motor(std::size_t slot) { return wire->motors.at(slot); }
-  [[nodiscard]] bool enabled(bus::AxisSlot slot) const { return axis(slot).has(AxisInput::enabled); }
-  [[nodiscard]] drive::ObjectId id(const std::string& object) const;
+  [[nodiscard]] bool enabled(AxisSlot slot) const { return axis(slot).has(AxisInput::enabled); }
+  [[nodiscard]] model::ObjectId id(const std::string& object) const;
   [[nodiscard]] const drive::ObjectState& stored(const std::string& object) const { return drive->store()[id(object)]; }
 
   ManualRuntime runtime;

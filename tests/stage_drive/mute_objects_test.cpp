@@ -24,9 +24,9 @@ constexpr std::array kEach{Subject::id286pro,         Subject::jd_rtu,          
 
 bool asks_by_code(Subject s) { return s == Subject::keya_rs232_speed || s == Subject::keya_rs485_speed; }
 
-const drive::DriveModel& model(DriveRig& rig) { return rig.stage.gateway().drive_of(1)->model(); }
+const model::DriveModel& model(DriveRig& rig) { return rig.stage.gateway().drive_of(1)->model(); }
 
-Place place_of(Subject subject, const bus::ObjectAddress& address) {
+Place place_of(Subject subject, const ObjectAddress& address) {
   if (asks_by_code(subject)) return {static_cast<std::uint16_t>(address.index & 0xFF), 0};
   return {address.index, address.sub};
 }
@@ -42,7 +42,7 @@ struct Readable {
 std::vector<Readable> readable(Subject subject) {
   DriveRig rig(subject);
   std::vector<Readable> out;
-  const drive::DriveModel& drive = model(rig);
+  const model::DriveModel& drive = model(rig);
   const auto add = [&](const std::string& object, Place place, bool tells_state, bool unsolicited) {
     const auto same = std::find_if(out.begin(), out.end(), [&](const Readable& r) { return r.place == place; });
     if (same == out.end())
@@ -51,14 +51,14 @@ std::vector<Readable> readable(Subject subject) {
       *same = {same->name, place, same->tells_state || tells_state, same->unsolicited || unsolicited};
   };
   for (std::size_t i = 0; i < drive.objects.size(); ++i) {
-    const drive::ObjectDef& object = drive.objects[i];
+    const model::ObjectDef& object = drive.objects[i];
     if (object.emulated || !object.readable) continue;
-    const auto id = static_cast<drive::ObjectId>(i);
+    const auto id = static_cast<model::ObjectId>(i);
     const auto& by_itself = drive.unsolicited.objects;
     add(object.name, place_of(subject, object.address), drive.needs_for_state(id),
         std::find(by_itself.begin(), by_itself.end(), id) != by_itself.end());
   }
-  if (drive::is_canopen(drive)) {
+  if (model::is_canopen(drive)) {
     for (std::uint8_t sub = 1; sub <= 4; ++sub) add("identity", {0x1018, sub}, false, false);
     for (std::uint16_t tpdo = 0; tpdo < 4; ++tpdo) {
       add("TPDO parameter", {static_cast<std::uint16_t>(0x1800 + tpdo), 1}, false, false);
@@ -108,7 +108,7 @@ TEST_P(MuteObject, WhileOnlineCostsItselfAlone) {
     const std::uint32_t valid = rig.axis().valid_bits();
     rig.faults().spoil(object.place, {});
     rig.stage.run(60s);
-    const bool by_itself = object.unsolicited || drive::is_canopen(model(rig));
+    const bool by_itself = object.unsolicited || model::is_canopen(model(rig));
     if (object.tells_state && !by_itself) {
       EXPECT_EQ(rig.axis().link_state, LinkState::setup);
     } else if (!object.tells_state) {
@@ -133,7 +133,7 @@ TEST_P(MuteObject, ThatAMotionNeedsStopsTheMotor) {
     const bool position = object.name == "position_actual" || object.name == "A.position";
     if ((!object.tells_state && !position) || object.unsolicited) continue;
     DriveRig rig(GetParam());
-    if (drive::is_canopen(model(rig))) continue;  // both come by TPDO, whoever reads them or not
+    if (model::is_canopen(model(rig))) continue;  // both come by TPDO, whoever reads them or not
     SCOPED_TRACE(object.name);
     rig.online();
     ASSERT_EQ(rig.command(Command::enable).outcome.code, Errc::ok);

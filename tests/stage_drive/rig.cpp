@@ -9,7 +9,7 @@ Subject subject_of(KincoType type) { return type == KincoType::jd ? Subject::jd_
 GatewayStage::Line line(KincoType type, const RigOptions& options) {
   GatewayStage::Line out = line_with(subject_of(type), options.lease);
   StageDrive& staged = out.drives.front();
-  const drive::ResolveAxis standard = staged.axis;
+  const profile::ResolveAxis standard = staged.axis;
   staged.options = options.drive;
   staged.options.type = type;
   staged.axis = options.axis;

@@ -12,7 +12,7 @@ using simulated::KincoType;
 
 struct RigOptions {
   simulated::DriveOptions drive{};
-  drive::ResolveAxis axis{};
+  profile::ResolveAxis axis{};
   simulated::Time reply_delay = std::chrono::milliseconds(2);
   std::optional<LeaseRules> lease{};  ///< none: leases are off
 };

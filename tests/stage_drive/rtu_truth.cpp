@@ -48,17 +48,17 @@ std::optional<std::vector<std::uint16_t>> reply_in(Bytes sent, const RtuRequest&
   return std::nullopt;
 }
 
-RtuTruth::RtuTruth(const app::Gateway& gateway, RtuLinkSim& link, AxisNumber axis)
+RtuTruth::RtuTruth(const compose::Gateway& gateway, RtuLinkSim& link, AxisNumber axis)
     : drive_(*gateway.drive_of(axis)), link_(link), axis_(axis), seen_(drive_.model().objects.size()) {}
 
 std::optional<std::string> RtuTruth::lie() {
   std::optional<std::string> found;
   for (std::size_t id = 0; id < seen_.size(); ++id) {
-    const drive::ObjectState& state = drive_.store()[static_cast<drive::ObjectId>(id)];
+    const drive::ObjectState& state = drive_.store()[static_cast<model::ObjectId>(id)];
     if (!state.known || state.emulated || state.exchange == seen_[id]) continue;
     seen_[id] = state.exchange;
     ++looked_at_;
-    const drive::ObjectDef& object = drive_.model().object(static_cast<drive::ObjectId>(id));
+    const model::ObjectDef& object = drive_.model().object(static_cast<model::ObjectId>(id));
     // What a trigger holds is shown to nobody, and a stop that is sent again may have the acknowledgement of the first.
     if (found || object.trigger || true_of(object, state)) continue;
     found = "axis " + std::to_string(axis_) + " " + object.name + " holds " + std::to_string(state.number) +
@@ -76,7 +76,7 @@ const simulated::RtuExchange* RtuTruth::asked_at(Instant sent) const {
   return first;
 }
 
-bool RtuTruth::true_of(const drive::ObjectDef& object, const drive::ObjectState& state) const {
+bool RtuTruth::true_of(const model::ObjectDef& object, const drive::ObjectState& state) const {
   const simulated::RtuExchange* exchange = asked_at(state.sent_at);
   if (exchange == nullptr) return false;
   const RtuRequest request = request_in(exchange->request);

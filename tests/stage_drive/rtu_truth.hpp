@@ -28,7 +28,7 @@ struct RtuRequest {
 
 class RtuTruth {
  public:
-  RtuTruth(const app::Gateway& gateway, RtuLinkSim& link, AxisNumber axis);
+  RtuTruth(const compose::Gateway& gateway, RtuLinkSim& link, AxisNumber axis);
 
   /// The first number stored since the last look that the drive did not send for it; none: all are true.
   [[nodiscard]] std::optional<std::string> lie();
@@ -36,7 +36,7 @@ class RtuTruth {
   [[nodiscard]] std::uint64_t looked_at() const { return looked_at_; }
 
  private:
-  [[nodiscard]] bool true_of(const drive::ObjectDef& object, const drive::ObjectState& state) const;
+  [[nodiscard]] bool true_of(const model::ObjectDef& object, const drive::ObjectState& state) const;
   [[nodiscard]] const simulated::RtuExchange* asked_at(Instant sent) const;
 
   const drive::Drive& drive_;

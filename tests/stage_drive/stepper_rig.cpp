@@ -10,8 +10,8 @@ using namespace std::chrono_literals;
 
 GatewayStage::Line line(const StepperOptions& options) {
   GatewayStage::Line out = rtu_line_of({options.drive}, 1);
-  drive::ResolveAxis& axis = out.rtu_drives.front().axis;
-  const drive::ResolveAxis standard = std::exchange(axis, options.axis);
+  profile::ResolveAxis& axis = out.rtu_drives.front().axis;
+  const profile::ResolveAxis standard = std::exchange(axis, options.axis);
   axis.number = standard.number;
   axis.name = standard.name;
   out.rtu_options.journal_capacity = 100'000;

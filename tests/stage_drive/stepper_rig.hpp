@@ -11,7 +11,7 @@ namespace axisgate::test {
 
 struct StepperOptions {
   simulated::Id286proOptions drive{};
-  drive::ResolveAxis axis{};
+  profile::ResolveAxis axis{};
 };
 
 /// A register (5).

@@ -14,7 +14,7 @@ using Kind = SdoReply::Kind;
 /// Bit fields of the command byte.
 constexpr Byte kToggle = 0x10;
 
-SdoFrame with_object(Byte command, bus::ObjectAddress object) {
+SdoFrame with_object(Byte command, ObjectAddress object) {
   SdoFrame frame{};
   frame[0] = command;
   store_le16(frame, 1, object.index);
@@ -22,7 +22,7 @@ SdoFrame with_object(Byte command, bus::ObjectAddress object) {
   return frame;
 }
 
-SdoFrame with_size(Byte command, bus::ObjectAddress object, std::uint32_t size) {
+SdoFrame with_size(Byte command, ObjectAddress object, std::uint32_t size) {
   SdoFrame frame = with_object(command, object);
   store_le(frame, 4, 4, size);
   return frame;
@@ -35,7 +35,7 @@ void copy_data(Bytes data, SdoFrame& frame, std::size_t at) {
   std::copy(data.begin(), data.end(), frame.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-bus::ObjectAddress object_of(Bytes bytes) { return {load_le16(bytes, 1), bytes[3]}; }
+ObjectAddress object_of(Bytes bytes) { return {load_le16(bytes, 1), bytes[3]}; }
 
 std::optional<SdoReply> take_data(SdoReply reply, Bytes bytes, std::size_t at, std::size_t count) {
   if (bytes.size() < at + count) return std::nullopt;
@@ -111,13 +111,13 @@ std::optional<SdoReply> decode_block_upload(Bytes bytes) {
 
 }  // namespace
 
-SdoFrame abort_frame(bus::ObjectAddress object, std::uint32_t code) { return with_size(0x80, object, code); }
+SdoFrame abort_frame(ObjectAddress object, std::uint32_t code) { return with_size(0x80, object, code); }
 
-SdoFrame upload_frame(bus::ObjectAddress object) { return with_object(0x40, object); }
+SdoFrame upload_frame(ObjectAddress object) { return with_object(0x40, object); }
 
 SdoFrame upload_segment_frame(bool toggle) { return {command_of(0x60U | (toggle ? kToggle : 0U))}; }
 
-SdoFrame block_upload_frame(bus::ObjectAddress object, std::uint8_t segments, std::uint8_t threshold) {
+SdoFrame block_upload_frame(ObjectAddress object, std::uint8_t segments, std::uint8_t threshold) {
   SdoFrame frame = with_object(0xA4, object);
   frame[4] = segments;
   frame[5] = threshold;
@@ -130,14 +130,14 @@ SdoFrame block_upload_ack_frame(std::uint8_t sequence, std::uint8_t segments) { 
 
 SdoFrame block_upload_end_frame() { return {0xA1}; }
 
-SdoFrame expedited_download_frame(bus::ObjectAddress object, Bytes data) {
+SdoFrame expedited_download_frame(ObjectAddress object, Bytes data) {
   const std::size_t unused = kExpeditedBytes - data.size();
   SdoFrame frame = with_object(command_of(0x23U | static_cast<unsigned>(unused << 2)), object);
   copy_data(data, frame, 4);
   return frame;
 }
 
-SdoFrame download_frame(bus::ObjectAddress object, std::uint32_t size) { return with_size(0x21, object, size); }
+SdoFrame download_frame(ObjectAddress object, std::uint32_t size) { return with_size(0x21, object, size); }
 
 SdoFrame download_segment_frame(bool toggle, Bytes data, bool last) {
   const auto unused = static_cast<unsigned>(kSegmentBytes - data.size());
@@ -146,7 +146,7 @@ SdoFrame download_segment_frame(bool toggle, Bytes data, bool last) {
   return frame;
 }
 
-SdoFrame block_download_frame(bus::ObjectAddress object, std::uint32_t size) { return with_size(0xC6, object, size); }
+SdoFrame block_download_frame(ObjectAddress object, std::uint32_t size) { return with_size(0xC6, object, size); }
 
 SdoFrame block_segment_frame(std::uint8_t sequence, Bytes data, bool last) {
   SdoFrame frame{command_of(sequence | (last ? 0x80U : 0U))};

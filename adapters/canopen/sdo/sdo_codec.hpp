@@ -34,22 +34,22 @@ inline constexpr std::uint32_t kAbortDeviceState = 0x08000022;
 
 using SdoFrame = std::array<Byte, kSdoFrameBytes>;
 
-[[nodiscard]] SdoFrame abort_frame(bus::ObjectAddress object, std::uint32_t code);
+[[nodiscard]] SdoFrame abort_frame(ObjectAddress object, std::uint32_t code);
 
-[[nodiscard]] SdoFrame upload_frame(bus::ObjectAddress object);
+[[nodiscard]] SdoFrame upload_frame(ObjectAddress object);
 [[nodiscard]] SdoFrame upload_segment_frame(bool toggle);
 /// `threshold`: the server may answer an object of so many bytes or fewer without blocks.
-[[nodiscard]] SdoFrame block_upload_frame(bus::ObjectAddress object, std::uint8_t segments, std::uint8_t threshold);
+[[nodiscard]] SdoFrame block_upload_frame(ObjectAddress object, std::uint8_t segments, std::uint8_t threshold);
 [[nodiscard]] SdoFrame block_upload_start_frame();
 [[nodiscard]] SdoFrame block_upload_ack_frame(std::uint8_t sequence, std::uint8_t segments);
 [[nodiscard]] SdoFrame block_upload_end_frame();
 
 /// `data`: 1 to kExpeditedBytes.
-[[nodiscard]] SdoFrame expedited_download_frame(bus::ObjectAddress object, Bytes data);
-[[nodiscard]] SdoFrame download_frame(bus::ObjectAddress object, std::uint32_t size);
+[[nodiscard]] SdoFrame expedited_download_frame(ObjectAddress object, Bytes data);
+[[nodiscard]] SdoFrame download_frame(ObjectAddress object, std::uint32_t size);
 /// `data`: 1 to kSegmentBytes.
 [[nodiscard]] SdoFrame download_segment_frame(bool toggle, Bytes data, bool last);
-[[nodiscard]] SdoFrame block_download_frame(bus::ObjectAddress object, std::uint32_t size);
+[[nodiscard]] SdoFrame block_download_frame(ObjectAddress object, std::uint32_t size);
 /// `data`: 1 to kSegmentBytes.
 [[nodiscard]] SdoFrame block_segment_frame(std::uint8_t sequence, Bytes data, bool last);
 /// `unused`: bytes of the last segment that carry nothing.
@@ -70,7 +70,7 @@ struct SdoReply {
     block_upload_ends,
   };
   Kind kind = Kind::downloaded;
-  bus::ObjectAddress object{};          ///< where names_object()
+  ObjectAddress object{};               ///< where names_object()
   bool toggle = false;                  ///< segments
   bool last = false;                    ///< segment
   bool crc = false;                     ///< the server of a block transfer can do CRC

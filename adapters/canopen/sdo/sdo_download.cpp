@@ -10,7 +10,7 @@ namespace {
 using Kind = SdoReply::Kind;
 }  // namespace
 
-SdoDownload::SdoDownload(bus::ObjectAddress object, Bytes data, bool block)
+SdoDownload::SdoDownload(ObjectAddress object, Bytes data, bool block)
     : object_(object), data_(data.begin(), data.end()), block_(block) {
   assert(!data.empty() && data.size() <= kMaxObjectBytes);
 }

@@ -14,14 +14,14 @@ namespace axisgate::canopen {
 class SdoDownload {
  public:
   /// `data`: 1 to kMaxObjectBytes. `block`: the server offers block transfer.
-  SdoDownload(bus::ObjectAddress object, Bytes data, bool block);
+  SdoDownload(ObjectAddress object, Bytes data, bool block);
 
   [[nodiscard]] SdoFrames begin();
   /// bus::Part::next: after an exchange that ended with `more`.
   [[nodiscard]] SdoFrames next();
   /// No value: not what is waited for.
   [[nodiscard]] std::optional<SdoStep> take(Bytes bytes);
-  [[nodiscard]] bus::ObjectAddress object() const { return object_; }
+  [[nodiscard]] ObjectAddress object() const { return object_; }
   [[nodiscard]] bool in_blocks() const { return in_blocks_; }
 
  private:
@@ -37,7 +37,7 @@ class SdoDownload {
   [[nodiscard]] SdoStep on_segment();
   [[nodiscard]] std::optional<SdoStep> on_block(const SdoReply& reply);
 
-  bus::ObjectAddress object_;
+  ObjectAddress object_;
   std::vector<Byte> data_;
   bool block_;
   Awaited awaited_ = Awaited::nothing;

@@ -47,14 +47,14 @@ struct SdoStep {
 }
 
 /// The server is sent an abort with `code`.
-[[nodiscard]] inline SdoStep aborting(bus::ObjectAddress object, std::uint32_t code, bus::ExchangeResult result) {
+[[nodiscard]] inline SdoStep aborting(ObjectAddress object, std::uint32_t code, bus::ExchangeResult result) {
   SdoStep step = over(std::move(result));
   step.frames.push_back(abort_frame(object, code));
   return step;
 }
 
 /// The server's data contradict themselves: what they were meant to be is unknown.
-[[nodiscard]] inline SdoStep broken(bus::ObjectAddress object, std::uint32_t code) {
+[[nodiscard]] inline SdoStep broken(ObjectAddress object, std::uint32_t code) {
   bus::ExchangeResult result;
   result.code = Errc::bad_reply;
   result.detail = code;

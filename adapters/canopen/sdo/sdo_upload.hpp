@@ -16,7 +16,7 @@ class SdoUpload {
  public:
   /// `whole`: four bytes at most are wanted (bus::Part::whole). `block`: the server offers block transfer. `unsaid`:
   /// the bytes of an answer that does not say how many it has.
-  SdoUpload(bus::ObjectAddress object, bool whole, bool block, std::size_t unsaid)
+  SdoUpload(ObjectAddress object, bool whole, bool block, std::size_t unsaid)
       : object_(object), whole_(whole), block_(block), unsaid_(unsaid) {}
 
   [[nodiscard]] SdoFrames begin();
@@ -24,7 +24,7 @@ class SdoUpload {
   [[nodiscard]] SdoFrames next();
   /// No value: not what is waited for.
   [[nodiscard]] std::optional<SdoStep> take(Bytes bytes);
-  [[nodiscard]] bus::ObjectAddress object() const { return object_; }
+  [[nodiscard]] ObjectAddress object() const { return object_; }
   [[nodiscard]] bool in_blocks() const { return in_blocks_; }
 
  private:
@@ -43,7 +43,7 @@ class SdoUpload {
   [[nodiscard]] SdoStep no_field() const;
   [[nodiscard]] SdoStep content() const;
 
-  bus::ObjectAddress object_;
+  ObjectAddress object_;
   bool whole_;
   bool block_;
   std::size_t unsaid_;

@@ -5,7 +5,7 @@
 
 #include <charconv>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 std::optional<HostPort> parse_host_port(std::string_view text) {
   const std::size_t colon = text.rfind(':');
@@ -27,4 +27,4 @@ std::string host_port_mistake(std::string_view text) {
   return fmt::format("'{}' is no HOST:PORT: write 127.0.0.1:1502, gateway.local:1502 or [::1]:1502", text);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

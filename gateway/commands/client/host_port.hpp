@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct HostPort {
   std::string host;  ///< a name or an address
@@ -18,4 +18,4 @@ struct HostPort {
 /// "'x' is no HOST:PORT: write ..."
 [[nodiscard]] std::string host_port_mistake(std::string_view text);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -9,7 +9,7 @@
 
 #include "gateway/commands/client/top_client.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using Failure = boost::system::error_code;
@@ -123,4 +123,4 @@ void ManualClient::close() {
   socket_.close(ignored);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

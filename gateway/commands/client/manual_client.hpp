@@ -18,7 +18,7 @@
 #include "gateway/commands/client/host_port.hpp"
 #include "gateway/core/bytes.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 class ManualClient {
  public:
@@ -62,4 +62,4 @@ class ManualClient {
   bool ended_ = false;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

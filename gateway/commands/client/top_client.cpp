@@ -10,7 +10,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 using boost::asio::awaitable;
 using boost::system::error_code;
@@ -151,4 +151,4 @@ awaitable<error_code> TopClient::receive(std::span<Byte> into) {
   co_return error;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -15,7 +15,7 @@
 
 #include "gateway/core/bytes.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// Of any unit id: the flat map, also where a listener shows one axis per unit id.
 inline constexpr std::uint8_t kFlatMapUnit = 255;
@@ -58,4 +58,4 @@ class TopClient {
   bool ran_out_ = false;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

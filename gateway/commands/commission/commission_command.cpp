@@ -18,7 +18,7 @@
 #include "gateway/process/device_wires.hpp"
 #include "gateway/process/stderr_log.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 // A drive that has not come up by then is not there, or not on this line.
@@ -28,29 +28,30 @@ constexpr Duration kWriteLimit = std::chrono::seconds(5);
 struct Place {
   std::size_t bus = 0;
   std::size_t drive = 0;
-  bus::AxisSlot slot = 0;
+  AxisSlot slot = 0;
 };
 
-std::optional<Place> find_axis(const Models& models, AxisNumber number) {
+std::optional<Place> find_axis(const compose::Models& models, AxisNumber number) {
   for (std::size_t b = 0; b < models.size(); ++b)
     for (std::size_t d = 0; d < models[b].size(); ++d)
       for (std::size_t a = 0; a < models[b][d].axes.size(); ++a)
-        if (models[b][d].axes[a].number == number) return Place{b, d, static_cast<bus::AxisSlot>(a)};
+        if (models[b][d].axes[a].number == number) return Place{b, d, static_cast<AxisSlot>(a)};
   return std::nullopt;
 }
 
 /// The bus of one axis, running, with nobody else on it.
 class Workbench {
  public:
-  Workbench(const Config& config, const Models& models, std::size_t bus)
-      : log_(stderr_log(LogLevel::warning)), runtime_(io_) {
-    Config alone;
+  Workbench(const config::Config& config, const compose::Models& models, std::size_t bus)
+      : log_(process::stderr_log(LogLevel::warning)), runtime_(io_) {
+    config::Config alone;
     alone.file = config.file;
     alone.buses = {config.buses[bus]};
-    gateway_ = std::make_unique<Gateway>(alone, Models{models[bus]}, runtime_, log_, device_wires(io_, runtime_, log_));
+    gateway_ = std::make_unique<compose::Gateway>(alone, compose::Models{models[bus]}, runtime_, log_,
+                                                  process::device_wires(io_, runtime_, log_));
     gateway_->start();
   }
-  [[nodiscard]] Gateway& gateway() { return *gateway_; }
+  [[nodiscard]] compose::Gateway& gateway() { return *gateway_; }
   [[nodiscard]] bool run_until(const std::function<bool()>& done, Duration limit) {
     const Instant end = runtime_.now() + limit;
     while (!done()) {
@@ -86,17 +87,17 @@ class Workbench {
   Log log_;
   AsioRuntime runtime_;
   LineInput person_{io_, STDIN_FILENO};
-  std::unique_ptr<Gateway> gateway_;
+  std::unique_ptr<compose::Gateway> gateway_;
 };
 
 /// What the loop does while the person is asked, and what a yes leads to.
 class Commissioning {
  public:
-  Commissioning(Workbench& bench, const drive::DriveModel& model, bus::AxisSlot slot, const CommissionOptions& options)
+  Commissioning(Workbench& bench, const model::DriveModel& model, AxisSlot slot, const CommissionOptions& options)
       : bench_(bench), model_(model), axis_(model.axes[slot].number), yes_(options.yes) {}
 
   /// Asks about one finding, and carries it out after a yes.
-  void ask(const drive::Check& check, std::string_view place) {
+  void ask(const model::Check& check, std::string_view place) {
     const Numbers shown = read(check);
     const auto bad = is_bad(model_, check, shown);
     if (bad == false) return fmt::print("\n{} {}: ok by now\n", place, check.name);
@@ -116,9 +117,9 @@ class Commissioning {
   /// Read anew: the image of a value that comes by itself may be older than the answer.
   [[nodiscard]] std::vector<AxisShown> axes_now() {
     std::vector<AxisShown> out;
-    for (const drive::AxisModel& axis : model_.axes) {
+    for (const model::AxisModel& axis : model_.axes) {
       const bool state_known = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
-                                           [&](drive::ObjectId id) { return model_.object(id).emulated || read(id); });
+                                           [&](model::ObjectId id) { return model_.object(id).emulated || read(id); });
       const AxisImage& image = *bench_.gateway().image().find(axis.number);
       out.push_back({axis.number, image.link_state, state_known, image.has(AxisInput::enabled)});
     }
@@ -140,21 +141,21 @@ class Commissioning {
     if (!line || ::isatty(STDIN_FILENO) == 0) fmt::print("{}\n", line.value_or("no answer"));
     return line && means_yes(*line);
   }
-  [[nodiscard]] Numbers read(const drive::Check& check) {
+  [[nodiscard]] Numbers read(const model::Check& check) {
     Numbers out;
-    for (const drive::ObjectId id : objects_of(model_, check))
+    for (const model::ObjectId id : objects_of(model_, check))
       if (const auto number = read(id)) out[id] = *number;
     return out;
   }
-  [[nodiscard]] std::optional<std::int64_t> read(drive::ObjectId id) {
-    const drive::ObjectDef& object = model_.object(id);
+  [[nodiscard]] std::optional<std::int64_t> read(model::ObjectId id) {
+    const model::ObjectDef& object = model_.object(id);
     const BatchResult result = bench_.ask(axis_, {false, object.address.index, object.address.sub, object.size, 0});
     if (result.outcome.code != Errc::ok) return std::nullopt;
     return object.number(result.object_data);
   }
-  void carry_out(const drive::Check& check) {
-    for (const drive::ObjectWrite& write : check.remedy) {
-      const drive::ObjectDef& object = model_.object(write.object);
+  void carry_out(const model::Check& check) {
+    for (const model::ObjectWrite& write : check.remedy) {
+      const model::ObjectDef& object = model_.object(write.object);
       wrote_ = true;
       const BatchResult result = bench_.ask(axis_, {true, object.address.index, object.address.sub, object.size,
                                                     static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))});
@@ -173,7 +174,7 @@ class Commissioning {
   [[nodiscard]] bool is_online() { return bench_.gateway().image().find(axis_)->link_state == LinkState::online; }
 
   Workbench& bench_;
-  const drive::DriveModel& model_;
+  const model::DriveModel& model_;
   AxisNumber axis_;
   bool yes_;
   bool input_ended_ = false;
@@ -181,9 +182,9 @@ class Commissioning {
   bool wrote_ = false;  ///< at least tried to
 };
 
-int commission(const LoadedConfig& loaded, const Place& place, const CommissionOptions& options) {
-  const drive::DriveModel& model = loaded.models[place.bus][place.drive];
-  const BusConfig& bus = loaded.config.buses[place.bus];
+int commission(const config::LoadedConfig& loaded, const Place& place, const CommissionOptions& options) {
+  const model::DriveModel& model = loaded.models[place.bus][place.drive];
+  const config::BusConfig& bus = loaded.config.buses[place.bus];
   fmt::print("axis {} \"{}\": {}, node {} on {} ({})\n", options.axis, model.axes[place.slot].name, model.title,
              model.node, bus.name, bus.device);
   Workbench bench(loaded.config, loaded.models, place.bus);
@@ -198,7 +199,7 @@ int commission(const LoadedConfig& loaded, const Place& place, const CommissionO
   }
   const std::vector<Finding> found = findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
   for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
-  const std::vector<const drive::Check*> questions = to_ask(found);
+  const std::vector<const model::Check*> questions = to_ask(found);
   if (questions.empty()) {
     fmt::print("nothing to remedy{}\n", leaves_bad(found) ? " by a write" : "");
     return leaves_bad(found) ? 1 : 0;
@@ -224,9 +225,9 @@ int run(const CommissionOptions& options) {
     fmt::print(stderr, "there is no standard input, and /dev/null cannot be opened in its place\n");
     return 1;
   }
-  const LoadResult result = load_config(options.config, options.profile_folders);
-  if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-  const auto& loaded = std::get<LoadedConfig>(result);
+  const config::LoadResult result = config::load_config(options.config, options.profile_folders);
+  if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
+  const auto& loaded = std::get<config::LoadedConfig>(result);
   const auto place = find_axis(loaded.models, options.axis);
   if (!place) {
     fmt::print(stderr, "{}: no axis {} in it\n", options.config, options.axis);
@@ -235,4 +236,4 @@ int run(const CommissionOptions& options) {
   return commission(loaded, *place, options);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct CommissionOptions {
   std::string config;
@@ -21,4 +21,4 @@ struct CommissionOptions {
 
 [[nodiscard]] int run(const CommissionOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

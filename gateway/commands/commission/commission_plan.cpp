@@ -7,42 +7,42 @@
 
 #include "gateway/drive/plan/action.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
-std::string address_of(const drive::DriveModel& model, const drive::ObjectDef& object) {
+std::string address_of(const model::DriveModel& model, const model::ObjectDef& object) {
   if (model.protocol == "modbus-rtu") return fmt::format("{} (register {})", object.name, object.address.index);
   return fmt::format("{} ({:04X}.{:02X})", object.name, object.address.index, object.address.sub);
 }
 
 /// Reading it tells what a write of it did.
-bool tells(const drive::ObjectDef& object) { return object.readable && !object.trigger && !object.emulated; }
+bool tells(const model::ObjectDef& object) { return object.readable && !object.trigger && !object.emulated; }
 
-std::optional<std::int64_t> number_of(const Numbers& numbers, drive::ObjectId id) {
+std::optional<std::int64_t> number_of(const Numbers& numbers, model::ObjectId id) {
   const auto found = numbers.find(id);
   return found == numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// The bits that the check looks at: others of its object may change and mean nothing here.
-std::int64_t looked_at(const drive::Check& check, std::int64_t number) {
+std::int64_t looked_at(const model::Check& check, std::int64_t number) {
   return check.bad.mask == 0 ? number : number & std::int64_t{check.bad.mask};
 }
 
-bool is_written(const drive::Check& check, drive::ObjectId id) {
+bool is_written(const model::Check& check, model::ObjectId id) {
   return std::any_of(check.remedy.begin(), check.remedy.end(),
-                     [&](const drive::ObjectWrite& write) { return write.object == id; });
+                     [&](const model::ObjectWrite& write) { return write.object == id; });
 }
 
-bool same(const drive::Check& check, drive::ObjectId id, std::int64_t one, std::int64_t other) {
+bool same(const model::Check& check, model::ObjectId id, std::int64_t one, std::int64_t other) {
   return one == other || (!is_written(check, id) && looked_at(check, one) == looked_at(check, other));
 }
 
 }  // namespace
 
-std::vector<Finding> findings(const drive::DriveModel& model, const drive::ObjectStore& store, bus::AxisSlot slot) {
+std::vector<Finding> findings(const model::DriveModel& model, const drive::ObjectStore& store, AxisSlot slot) {
   std::vector<Finding> out;
-  for (const drive::Check& check : model.checks) {
-    if (check.slot != bus::kNoAxis && check.slot != slot) continue;
+  for (const model::Check& check : model.checks) {
+    if (check.slot != kNoAxis && check.slot != slot) continue;
     const drive::ObjectState& state = store[check.bad.object];
     const bool bad =
         state.known && check.bad.holds(model.object(check.bad.object), static_cast<std::uint32_t>(state.number));
@@ -51,8 +51,8 @@ std::vector<Finding> findings(const drive::DriveModel& model, const drive::Objec
   return out;
 }
 
-std::vector<const drive::Check*> to_ask(const std::vector<Finding>& found) {
-  std::vector<const drive::Check*> out;
+std::vector<const model::Check*> to_ask(const std::vector<Finding>& found) {
+  std::vector<const model::Check*> out;
   for (const Finding& finding : found)
     if (finding.bad && !finding.check->remedy.empty()) out.push_back(finding.check);
   return out;
@@ -63,15 +63,15 @@ bool leaves_bad(const std::vector<Finding>& found) {
                      [](const Finding& finding) { return finding.bad && finding.check->remedy.empty(); });
 }
 
-std::vector<drive::ObjectId> objects_of(const drive::DriveModel& model, const drive::Check& check) {
-  std::vector<drive::ObjectId> out{check.bad.object};
-  for (const drive::ObjectWrite& write : check.remedy)
+std::vector<model::ObjectId> objects_of(const model::DriveModel& model, const model::Check& check) {
+  std::vector<model::ObjectId> out{check.bad.object};
+  for (const model::ObjectWrite& write : check.remedy)
     if (tells(model.object(write.object)) && std::find(out.begin(), out.end(), write.object) == out.end())
       out.push_back(write.object);
   return out;
 }
 
-std::optional<bool> is_bad(const drive::DriveModel& model, const drive::Check& check, const Numbers& numbers) {
+std::optional<bool> is_bad(const model::DriveModel& model, const model::Check& check, const Numbers& numbers) {
   const auto number = number_of(numbers, check.bad.object);
   if (!number) return std::nullopt;
   return check.bad.holds(model.object(check.bad.object), static_cast<std::uint32_t>(*number));
@@ -87,9 +87,9 @@ std::string objection(const std::vector<AxisShown>& axes) {
   return "";
 }
 
-std::string objection(const drive::DriveModel& model, const drive::Check& check, const Numbers& shown,
+std::string objection(const model::DriveModel& model, const model::Check& check, const Numbers& shown,
                       const Numbers& now) {
-  for (const drive::ObjectId id : objects_of(model, check)) {
+  for (const model::ObjectId id : objects_of(model, check)) {
     const auto before = number_of(shown, id);
     const auto after = number_of(now, id);
     const std::string where = address_of(model, model.object(id));
@@ -102,13 +102,13 @@ std::string objection(const drive::DriveModel& model, const drive::Check& check,
 
 bool means_yes(std::string_view line) { return line == "yes"; }
 
-std::string text(const drive::DriveModel& model, const drive::ObjectWrite& write) {
+std::string text(const model::DriveModel& model, const model::ObjectWrite& write) {
   const std::string what = fmt::format("{} = {}", address_of(model, model.object(write.object)), write.raw);
   return write.why.empty() ? what : fmt::format("{}  {}", what, write.why);
 }
 
-std::string text(const drive::DriveModel& model, const Finding& finding) {
-  const drive::Check& check = *finding.check;
+std::string text(const model::DriveModel& model, const Finding& finding) {
+  const model::Check& check = *finding.check;
   const std::string where = address_of(model, model.object(check.bad.object));
   if (!finding.known) return fmt::format("?    {}: {} is not known", check.name, where);
   if (!finding.bad) return fmt::format("ok   {}: {} = {:#x}", check.name, where, finding.value);
@@ -116,12 +116,12 @@ std::string text(const drive::DriveModel& model, const Finding& finding) {
                      check.remedy.empty() ? "\n       no write remedies this: see the drive's manual" : "");
 }
 
-std::string question(const drive::DriveModel& model, const drive::Check& check, const Numbers& shown) {
+std::string question(const model::DriveModel& model, const model::Check& check, const Numbers& shown) {
   const auto value = number_of(shown, check.bad.object);
   std::string out =
       fmt::format("{}: {} = {}\n  {}\n  a yes writes\n", check.name, address_of(model, model.object(check.bad.object)),
                   value ? fmt::format("{:#x}", *value) : "not known", check.text);
-  for (const drive::ObjectWrite& write : check.remedy) {
+  for (const model::ObjectWrite& write : check.remedy) {
     const auto now = number_of(shown, write.object);
     const bool state_known = now && tells(model.object(write.object));
     out += fmt::format("    {}{}\n", text(model, write), state_known ? fmt::format("  (now {:#x})", *now) : "");
@@ -129,11 +129,11 @@ std::string question(const drive::DriveModel& model, const drive::Check& check, 
   return out;
 }
 
-ReadBack read_back(const drive::DriveModel& model, const drive::Check& check, const Numbers& after) {
+ReadBack read_back(const model::DriveModel& model, const model::Check& check, const Numbers& after) {
   ReadBack out;
   bool held = true;
-  for (const drive::ObjectWrite& write : check.remedy) {
-    const drive::ObjectDef& object = model.object(write.object);
+  for (const model::ObjectWrite& write : check.remedy) {
+    const model::ObjectDef& object = model.object(write.object);
     if (!tells(object)) continue;
     const auto number = number_of(after, write.object);
     const bool holds = number == object.number(drive::wire_bits(write.raw, object.size));
@@ -154,4 +154,4 @@ ReadBack read_back(const drive::DriveModel& model, const drive::Check& check, co
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -13,31 +13,31 @@
 
 #include "gateway/drive/device/drive.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct Finding {
-  const drive::Check* check = nullptr;
+  const model::Check* check = nullptr;
   bool known = false;  ///< the value was read from the drive
   bool bad = false;
   std::int64_t value = 0;
 };
 
 /// One per check that concerns the axis, in the profile's order.
-[[nodiscard]] std::vector<Finding> findings(const drive::DriveModel& model, const drive::ObjectStore& store,
-                                            bus::AxisSlot slot);
+[[nodiscard]] std::vector<Finding> findings(const model::DriveModel& model, const drive::ObjectStore& store,
+                                            AxisSlot slot);
 /// The checks that are asked about, in the same order: bad ones that have a remedy.
-[[nodiscard]] std::vector<const drive::Check*> to_ask(const std::vector<Finding>& found);
+[[nodiscard]] std::vector<const model::Check*> to_ask(const std::vector<Finding>& found);
 /// Something is bad that no write remedies.
 [[nodiscard]] bool leaves_bad(const std::vector<Finding>& found);
 
 /// What was read of the drive; an object that did not answer is absent.
-using Numbers = std::map<drive::ObjectId, std::int64_t>;
+using Numbers = std::map<model::ObjectId, std::int64_t>;
 
 /// What is read before a question, after its yes and after its writes: the check's object, and those that the remedy
 /// writes. Not a trigger: what it reads as says nothing.
-[[nodiscard]] std::vector<drive::ObjectId> objects_of(const drive::DriveModel& model, const drive::Check& check);
+[[nodiscard]] std::vector<model::ObjectId> objects_of(const model::DriveModel& model, const model::Check& check);
 /// No value: the check's object did not answer.
-[[nodiscard]] std::optional<bool> is_bad(const drive::DriveModel& model, const drive::Check& check,
+[[nodiscard]] std::optional<bool> is_bad(const model::DriveModel& model, const model::Check& check,
                                          const Numbers& numbers);
 
 /// An axis of the drive as it shows itself now.
@@ -50,22 +50,22 @@ struct AxisShown {
 /// Why nothing may be written to this drive now; empty: it may.
 [[nodiscard]] std::string objection(const std::vector<AxisShown>& axes);
 /// Why a yes to what was `shown` does not count for what is there `now`; empty: it counts.
-[[nodiscard]] std::string objection(const drive::DriveModel& model, const drive::Check& check, const Numbers& shown,
+[[nodiscard]] std::string objection(const model::DriveModel& model, const model::Check& check, const Numbers& shown,
                                     const Numbers& now);
 /// "yes" and nothing else.
 [[nodiscard]] bool means_yes(std::string_view line);
 
 /// "name (2010.03) = 0  why"; of Modbus RTU "name (register 296) = 0  why".
-[[nodiscard]] std::string text(const drive::DriveModel& model, const drive::ObjectWrite& write);
-[[nodiscard]] std::string text(const drive::DriveModel& model, const Finding& finding);
+[[nodiscard]] std::string text(const model::DriveModel& model, const model::ObjectWrite& write);
+[[nodiscard]] std::string text(const model::DriveModel& model, const Finding& finding);
 /// What is wrong, what it means, and each write of the remedy with what it takes the place of; lines.
-[[nodiscard]] std::string question(const drive::DriveModel& model, const drive::Check& check, const Numbers& shown);
+[[nodiscard]] std::string question(const model::DriveModel& model, const model::Check& check, const Numbers& shown);
 
 struct ReadBack {
   bool cured = false;
   std::string text;  ///< what each written object reads now, and whether the finding is gone; lines
 };
 /// By what was read back after the writes.
-[[nodiscard]] ReadBack read_back(const drive::DriveModel& model, const drive::Check& check, const Numbers& after);
+[[nodiscard]] ReadBack read_back(const model::DriveModel& model, const model::Check& check, const Numbers& after);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -11,12 +11,12 @@
 
 #include "gateway/config/config_fault.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// The exit code: 1.
-[[nodiscard]] inline int tell(const std::vector<ConfigFault>& faults) {
-  for (const ConfigFault& fault : faults) fmt::print(stderr, "{}\n", text(fault));
+[[nodiscard]] inline int tell(const std::vector<config::ConfigFault>& faults) {
+  for (const config::ConfigFault& fault : faults) fmt::print(stderr, "{}\n", text(fault));
   return 1;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <utility>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// /dev/tty can be opened by a process that has a controlling terminal, and by no other (tty(4)).
@@ -64,4 +64,4 @@ void EndSignals::on_signal(int signal) {
   on_end_(false);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -12,7 +12,7 @@
 
 #include "gateway/core/log.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// Whoever started the process wants it to outlive its terminal (nohup).
 [[nodiscard]] bool hangups_are_ignored();
@@ -36,4 +36,4 @@ class EndSignals {
   boost::asio::signal_set signals_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -4,9 +4,9 @@
 // Never says anything.
 #pragma once
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// An option or its value is wrong.
 inline constexpr int kWrongCommandLine = 2;
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

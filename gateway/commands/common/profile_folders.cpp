@@ -9,7 +9,7 @@
 
 #include "gateway/profile/read/profile_loader.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 namespace fs = std::filesystem;
 
@@ -35,8 +35,8 @@ std::vector<std::string> profile_folders(const std::string& given) {
   return folders;
 }
 
-std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders) {
-  std::vector<drive::Profile> out;
+std::vector<profile::Profile> profiles_in(const std::vector<std::string>& folders) {
+  std::vector<profile::Profile> out;
   std::set<std::string> names;
   for (const std::string& folder : folders) {
     std::set<fs::path> files;
@@ -46,7 +46,7 @@ std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders)
     if (error) fmt::print(stderr, "{}: {}\n", folder, error.message());
     for (const fs::path& file : files) {
       if (!names.insert(file.stem().string()).second) continue;
-      const drive::LoadedProfile loaded = drive::load_profile(file.string(), folders);
+      const profile::LoadedProfile loaded = profile::load_profile(file.string(), folders);
       if (loaded.base_only) continue;
       if (!loaded.faults.empty()) fmt::print(stderr, "left out: {}\n", text(loaded.faults.front()));
       if (loaded.faults.empty()) out.push_back(loaded.profile);
@@ -55,4 +55,4 @@ std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders)
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

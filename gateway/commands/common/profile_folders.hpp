@@ -9,7 +9,7 @@
 
 #include "gateway/profile/read/profile.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// What is wrong with a folder that --profiles names; empty: nothing.
 [[nodiscard]] std::string no_folder(const std::string& given);
@@ -19,6 +19,6 @@ namespace axisgate::app {
 
 /// All profiles of the folders; of two with one name, the first. Bases are left out; one with mistakes as
 /// well, and reported on stderr.
-[[nodiscard]] std::vector<drive::Profile> profiles_in(const std::vector<std::string>& folders);
+[[nodiscard]] std::vector<profile::Profile> profiles_in(const std::vector<std::string>& folders);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

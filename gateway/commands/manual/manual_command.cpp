@@ -20,7 +20,7 @@
 #include "gateway/image/register_map.hpp"
 #include "gateway/upstream/modbus_tcp/session/device_identification.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr Duration kLookPeriod = std::chrono::milliseconds(100);
@@ -289,4 +289,4 @@ int run(const ManualOptions& options) {
   return tell_end(options, ended);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -9,7 +9,7 @@
 
 #include "gateway/commands/manual/plan/manual_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct ManualOptions {
   ManualArguments arguments;
@@ -26,4 +26,4 @@ struct ManualOptions {
 /// command line that is wrong.
 [[nodiscard]] int run(const ManualOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

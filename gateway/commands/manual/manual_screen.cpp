@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <utility>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr std::size_t kUsualWidth = 80;
@@ -57,4 +57,4 @@ void ManualScreen::put(std::string_view text) {
   on_gone_();
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -10,7 +10,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 class ManualScreen {
  public:
@@ -35,4 +35,4 @@ class ManualScreen {
   Instant next_ = kLongAgo;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -21,7 +21,7 @@
 #include "gateway/commands/scan/scan_progress.hpp"
 #include "gateway/commands/scan/serial_scan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// A bus that cannot be spoken on by then is not waited for.
@@ -107,7 +107,7 @@ Scanner::Scanner(const ScanOptions& options, ScanPlan plan, boost::asio::io_cont
   complaint_ = fmt::format("{}: cannot be spoken on", options.device);
   for (std::uint8_t node = 1; node <= ScanPlan::kLastNode; ++node) {
     nodes_.push_back(std::make_unique<Node>(*this, node));
-    bus_.attach(static_cast<bus::DriveSlot>(node - 1), *nodes_.back());
+    bus_.attach(static_cast<DriveSlot>(node - 1), *nodes_.back());
   }
 }
 
@@ -161,7 +161,7 @@ void Scanner::on_result(const bus::ExchangeResult& result) {
 void Scanner::ask_next() {
   const auto next = plan_.next();
   if (!next) return end({});
-  bus_.set_poll_due(static_cast<bus::DriveSlot>(next->node - 1), runtime_.now());
+  bus_.set_poll_due(static_cast<DriveSlot>(next->node - 1), runtime_.now());
 }
 
 void Scanner::tell_progress() {
@@ -235,4 +235,4 @@ int run(const ScanOptions& options) {
   return tell(options, scan);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

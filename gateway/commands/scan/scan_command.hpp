@@ -12,7 +12,7 @@
 #include "gateway/commands/scan/plan/scan_plan.hpp"
 #include "gateway/commands/scan/plan/serial_scan_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct ScanOptions {
   std::string device;  ///< "can0", "slcan:PATH", or the path of a serial port
@@ -28,4 +28,4 @@ struct ScanOptions {
 /// a device or a bit rate that is none.
 [[nodiscard]] int run(const ScanOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

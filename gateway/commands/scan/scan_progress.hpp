@@ -12,7 +12,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 class ScanProgress {
  public:
@@ -48,4 +48,4 @@ class ScanProgress {
   Instant next_ = kLongAgo;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -20,7 +20,7 @@
 #include "gateway/commands/scan/scan_progress.hpp"
 #include "gateway/config/adapter_names.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// A port that cannot be opened by then is not waited for.
@@ -29,7 +29,7 @@ constexpr Duration kOpenLimit = std::chrono::seconds(3);
 /// The scan of one line, from its first opening to its end: one speech after the other, each with a wire of its own.
 class SerialScanner final : private bus::WireEvents {
  public:
-  SerialScanner(const ScanOptions& options, std::vector<drive::Profile> profiles, boost::asio::io_context& io);
+  SerialScanner(const ScanOptions& options, std::vector<profile::Profile> profiles, boost::asio::io_context& io);
   void start();
   /// The first reason counts; empty: all were asked.
   void end(std::string_view why);
@@ -60,7 +60,7 @@ class SerialScanner final : private bus::WireEvents {
   boost::asio::io_context& io_;
   AsioRuntime runtime_;
   Log log_;
-  std::vector<drive::Profile> profiles_;
+  std::vector<profile::Profile> profiles_;
   SerialScanPlan plan_;
   ScanProgress progress_;
   std::string complaint_;
@@ -75,7 +75,7 @@ class SerialScanner final : private bus::WireEvents {
   std::unique_ptr<bus::Wire> wire_;  // last, so that it goes first: it calls back
 };
 
-SerialScanner::SerialScanner(const ScanOptions& options, std::vector<drive::Profile> profiles,
+SerialScanner::SerialScanner(const ScanOptions& options, std::vector<profile::Profile> profiles,
                              boost::asio::io_context& io)
     : options_(options),
       io_(io),
@@ -121,12 +121,12 @@ std::unique_ptr<bus::Wire> SerialScanner::wire_for(const SerialSpeech& speech) {
   settings.baud = speech.baud;
   if (options_.parity == "even") settings.parity = serial::Parity::even;
   if (options_.parity == "odd") settings.parity = serial::Parity::odd;
-  if (speech.protocol == adapter::kKincoSerial) {
+  if (speech.protocol == config::adapter::kKincoSerial) {
     auto link = std::make_unique<serial::SerialLink>("scan", settings, io_, runtime_, log_);
     return std::make_unique<kinco::KincoWire>("scan", std::move(link), runtime_, log_);
   }
   std::vector<std::uint8_t> errors;
-  for (const drive::Profile& profile : profiles_)
+  for (const profile::Profile& profile : profiles_)
     if (const auto spec = profile.protocols.find(speech.protocol); spec != profile.protocols.end())
       errors.insert(errors.end(), spec->second.rtu.error_functions.begin(), spec->second.rtu.error_functions.end());
   std::vector<modbus_rtu::RtuNode> nodes;
@@ -251,4 +251,4 @@ int run_serial_scan(const ScanOptions& options) {
   return tell_serial(options, scan);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

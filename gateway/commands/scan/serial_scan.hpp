@@ -6,9 +6,9 @@
 
 #include "gateway/commands/scan/scan_command.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// As run(ScanOptions), of a device that is a serial port.
 [[nodiscard]] int run_serial_scan(const ScanOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -21,7 +21,7 @@
 #include "gateway/image/register_map.hpp"
 #include "gateway/upstream/modbus_tcp/session/device_identification.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using boost::asio::awaitable;
@@ -178,11 +178,11 @@ int run(const TopOptions& options) {
   }
   Top::Names names;
   if (!options.config.empty()) {
-    const LoadResult result = load_config(options.config, options.profile_folders);
-    if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return tell(*faults);
-    for (const BusConfig& bus : std::get<LoadedConfig>(result).config.buses)
-      for (const DriveConfig& drive : bus.drives)
-        for (const AxisConfig& axis : drive.axes) names[axis.number] = axis.name;
+    const config::LoadResult result = config::load_config(options.config, options.profile_folders);
+    if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
+    for (const config::BusConfig& bus : std::get<config::LoadedConfig>(result).config.buses)
+      for (const config::DriveConfig& drive : bus.drives)
+        for (const config::AxisConfig& axis : drive.axes) names[axis.number] = axis.name;
   }
   std::string problem;
   bool has_shown = false;
@@ -198,4 +198,4 @@ int run(const TopOptions& options) {
   return has_shown && problem.empty() ? 0 : 1;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 struct TopOptions {
   std::string endpoint;             ///< "HOST:PORT", HOST a name or an address, IPv6 in brackets
@@ -24,4 +24,4 @@ struct TopOptions {
 /// one single table was asked for and the gateway did not answer; 2 for an endpoint that is none.
 [[nodiscard]] int run(const TopOptions& options);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 // ECMA-48: the alternate screen keeps what the user had on the terminal; its cursor is hidden while we redraw.
@@ -97,4 +97,4 @@ void TopScreen::draw(std::span<const TopLine> lines) {
   put(terminal_frame(lines, shown.columns, shown.rows, colours_));
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -11,7 +11,7 @@
 
 #include "gateway/commands/view/top_table.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// One frame of a redrawn terminal: `lines` cut to the window and what was there before wiped. Pure. `colours`: lines
 /// that ask for attention are yellow or red.
@@ -40,4 +40,4 @@ class TopScreen {
   std::string last_message_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -11,7 +11,7 @@
 #include "gateway/image/quantity.hpp"
 #include "gateway/image/register_map.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr Byte kReadInputs = 0x02, kReadHolding = 0x03, kWriteCoil = 0x05, kWriteRegister = 0x06,
@@ -210,4 +210,4 @@ std::string exception_text(ModbusException exception) {
   return fmt::format("exception 0x{:02X} {}", number, name_of(WordKind::exception, number));
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

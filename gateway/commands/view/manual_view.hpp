@@ -18,7 +18,7 @@
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/command.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// The rows of an axis that are read at once: up to and with loss_stop_ms.
 inline constexpr std::uint16_t kManualRegisters = 99;
@@ -97,4 +97,4 @@ struct ManualWrite {
 /// "exception 0x04 server device failure"
 [[nodiscard]] std::string exception_text(ModbusException exception);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

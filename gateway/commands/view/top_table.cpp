@@ -14,7 +14,7 @@
 #include "gateway/image/quantity.hpp"
 #include "gateway/image/register_map.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// One axis's registers, read as the quantities they are.
@@ -255,4 +255,4 @@ std::string text_of(std::span<const TopLine> lines) {
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -14,7 +14,7 @@
 
 #include "gateway/image/axis_image.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// The part of an axis's block that a cyclic scanner reads (design 3.1): offsets 0..38.
 inline constexpr std::uint16_t kAxisRegisters = 39;
@@ -59,4 +59,4 @@ struct TopLine {
 /// The same as text, each line ended by '\n'.
 [[nodiscard]] std::string text_of(std::span<const TopLine> lines);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -12,7 +12,7 @@
 
 namespace axisgate::drive {
 
-Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
+Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
            AxisHost& host)
     : host_(host),
       image_(image),
@@ -20,7 +20,7 @@ Axis::Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, cons
       core_{drive, drive.axes[slot], store, turn},
       shown_(core_, image_, host_),
       ownership_(image.lease, drive.axes[slot].lease) {
-  core_.loss_stop_ms = loss_stop_ms(drive, std::nullopt);
+  core_.loss_stop_ms = model::loss_stop_ms(drive, std::nullopt);
 }
 
 Axis::Pending* Axis::find(bus::JobId id) {
@@ -34,9 +34,10 @@ bool Axis::motion_pending() const {
 
 bool Axis::holds(Quantity quantity, std::int64_t value) const {
   if (quantity == Quantity::mode)
-    return core_.model.mode != kNoObject && core_.store[core_.model.mode].cached && core_.mode_in_force() == value;
-  const Binding* binding = core_.model.binding(quantity);
-  if (binding == nullptr || binding->object == kNoObject || !core_.store[binding->object].cached) return false;
+    return core_.model.mode != model::kNoObject && core_.store[core_.model.mode].cached &&
+           core_.mode_in_force() == value;
+  const model::Binding* binding = core_.model.binding(quantity);
+  if (binding == nullptr || binding->object == model::kNoObject || !core_.store[binding->object].cached) return false;
   return core_.value(quantity) == value;
 }
 
@@ -44,7 +45,9 @@ void Axis::set_alarm(AxisAlarm alarm, bool on) {
   core_.alarms = on ? core_.alarms | bit(alarm) : core_.alarms & ~bit(alarm);
 }
 
-void Axis::set_loss_reaction(std::optional<bool> holds) { core_.loss_stop_ms = loss_stop_ms(core_.drive, holds); }
+void Axis::set_loss_reaction(std::optional<bool> holds) {
+  core_.loss_stop_ms = model::loss_stop_ms(core_.drive, holds);
+}
 
 void Axis::on_bring_up() {
   core_.homing_method.reset();
@@ -58,7 +61,7 @@ void Axis::on_bring_up() {
   core_.counter_wrapped = false;
   counted_.reset();
   // What was not held before is not held until it is read.
-  if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = loss_stop_ms(core_.drive, std::nullopt);
+  if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = model::loss_stop_ms(core_.drive, std::nullopt);
   on_unreachable();
   if (!core_.is_virtual()) return;
   core_.machine.reset();

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/axis/axis_publisher.hpp"
 #include "gateway/drive/axis/telling.hpp"
 #include "gateway/drive/command_sequence/command_sequence.hpp"
@@ -29,7 +30,7 @@ inline constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
 class Axis {
  public:
   /// `turn`: its drive's, kept up to date by it.
-  Axis(const DriveModel& drive, bus::AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
+  Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
        AxisHost& host);
 
   [[nodiscard]] std::optional<BatchResult> submit(const WriteBatch& batch, BatchCallback on_result);
@@ -43,7 +44,7 @@ class Axis {
   /// The drive has sent an emergency code; 0: the reported emergency is over.
   void on_emergency(std::uint16_t code) { core_.fault.emergency(code, core_.turn.now, core_.store.exchange()); }
   /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
-  [[nodiscard]] std::optional<ObjectId> cause_to_read() const { return core_.fault.next(core_.turn.now); }
+  [[nodiscard]] std::optional<model::ObjectId> cause_to_read() const { return core_.fault.next(core_.turn.now); }
   void cause_asked() { core_.fault.asked(core_.turn.now); }
   /// What came by itself shows the end of the motion, and a read must settle it.
   [[nodiscard]] bool end_wants_sample() const { return core_.motion.end_wants_sample(core_.facts()); }
@@ -54,7 +55,7 @@ class Axis {
   /// It was suspect: it may have restarted unseen.
   void on_invalidated() { reference_invalidated_ = true; }
   /// The drive, which is there, tells this object no more: a motion that needs it is stopped.
-  void on_blind(ObjectId object);
+  void on_blind(model::ObjectId object);
   void set_alarm(AxisAlarm alarm, bool on);
   /// Whether its drive holds what makes it notice a dead gateway; none: nobody knows.
   void set_loss_reaction(std::optional<bool> holds);
@@ -189,7 +190,7 @@ class Axis {
   void observe_owed();
   void observe_stop();
   void watch_enable(const CommandSequence& unknown);
-  void take_back_enable(State402 state);
+  void take_back_enable(model::State402 state);
   void on_unreachable();
   void send_owed(StopKind stop);
   void note_stop(const Pending& pending, bool ended);
@@ -242,7 +243,7 @@ class Axis {
 
   AxisHost& host_;
   AxisImage& image_;
-  bus::AxisSlot slot_;
+  AxisSlot slot_;
   AxisCore core_;
   AxisPublisher shown_;
   std::vector<Pending> pending_;

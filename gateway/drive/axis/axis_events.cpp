@@ -34,7 +34,7 @@ std::string alarm_against(const AxisCore& core, AxisNumber axis, const WriteBatc
 
 bool resets(const WriteBatch& batch) {
   return batch.command == Command::fault_reset ||
-         (batch.controlword && (*batch.controlword & controlword::kFaultReset) != 0);
+         (batch.controlword && (*batch.controlword & model::controlword::kFaultReset) != 0);
 }
 
 }  // namespace

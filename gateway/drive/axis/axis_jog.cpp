@@ -16,7 +16,7 @@ bool outcome_unknown(Errc code) { return command_result(code) == CommandResult::
 
 // A jog is a run at the jog velocity that needs its button: what the drive is told is the same.
 Errc Axis::begin_jog(WriteBatch& batch) {
-  const Binding* velocity = core_.model.binding(Quantity::target_velocity);
+  const model::Binding* velocity = core_.model.binding(Quantity::target_velocity);
   if (velocity == nullptr || !core_.model.command(Command::run_velocity)) return Errc::not_supported;
   const Command direction = batch.command;
   const auto speed = static_cast<std::int64_t>(image_.jog_velocity);
@@ -43,9 +43,9 @@ Duration Axis::usual_position_gap() const {
 }
 
 std::optional<JogTravel> Axis::jog_travel(std::int64_t velocity) const {
-  const Binding* target = core_.model.binding(Quantity::target_position);
-  const Binding* actual = core_.model.binding(Quantity::position_actual);
-  if (!core_.homed || target == nullptr || actual == nullptr || actual->object == kNoObject) return std::nullopt;
+  const model::Binding* target = core_.model.binding(Quantity::target_position);
+  const model::Binding* actual = core_.model.binding(Quantity::position_actual);
+  if (!core_.homed || target == nullptr || actual == nullptr || actual->object == model::kNoObject) return std::nullopt;
   // What its register cannot show lies beyond the limits all the same.
   const ObjectState& state = core_.store[actual->object];
   const auto position = state.known ? actual->to_register_or_bound(state.number) : std::nullopt;
@@ -74,8 +74,8 @@ Instant Axis::jog_limit_due() const {
 }
 
 void Axis::watch_position() {
-  const Binding* position = core_.model.binding(Quantity::position_actual);
-  if (position == nullptr || position->object == kNoObject) return;
+  const model::Binding* position = core_.model.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == model::kNoObject) return;
   const Instant newest = core_.store[position->object].sent_at;
   if (!jog_.active() || jog_is_starting()) {
     jog_started_ = core_.turn.now;

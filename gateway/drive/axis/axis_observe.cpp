@@ -35,8 +35,8 @@ void Axis::observe() {
   observe_homing_method();
   observe_end_of_fault(facts);
   bool clamped = false;
-  for (const Binding& binding : core_.model.bindings)
-    if (binding.object != kNoObject && binding.object != core_.model.controlword)
+  for (const model::Binding& binding : core_.model.bindings)
+    if (binding.object != model::kNoObject && binding.object != core_.model.controlword)
       clamped = clamped || core_.store[binding.object].clamped;
   set_alarm(AxisAlarm::clamped, clamped);
   observe_jog();
@@ -64,8 +64,8 @@ void Axis::observe_reference(const AxisFacts& facts) {
 // No motor goes through half of its counter's numbers between two looks: it has come to their end, and goes on at the
 // other. The drive says homed all the same, and every place that is told it from now on is another one.
 void Axis::observe_counter() {
-  const ObjectId id = core_.object_of(Quantity::position_actual);
-  const bool seen = id != kNoObject && core_.store[id].known && core_.reachable();
+  const model::ObjectId id = core_.object_of(Quantity::position_actual);
+  const bool seen = id != model::kNoObject && core_.store[id].known && core_.reachable();
   const auto before = std::exchange(counted_, seen ? std::optional(core_.store[id].number) : std::nullopt);
   if (!before || !counted_) return;
   const std::int64_t half = std::int64_t{1} << (8 * core_.object(id).size - 1);
@@ -87,10 +87,10 @@ void Axis::observe_volatile() {
   const bool speeds_lost = std::ranges::any_of(core_.accepted_speeds, [this](const auto& told) {
     const ObjectState& state = core_.store[told.first];
     const bool read = state.known && !state.unverified && !state.unsure && !state.clamped;
-    return read && core_.object(told.first).nvm == Nvm::no && state.number != told.second.raw;
+    return read && core_.object(told.first).nvm == model::Nvm::no && state.number != told.second.raw;
   });
   if (std::exchange(speeds_lost_, speeds_lost) || !speeds_lost) return;
-  const bool may_run = holds_motor(core_.facts().state);
+  const bool may_run = model::holds_motor(core_.facts().state);
   core_.make(core_.model.controlword, 0);
   on_unseen_restart("it has restarted, too quickly to go offline: enable it anew");
   if (may_run) stop_by_itself(Command::disable, false, [](const BatchResult&) {});
@@ -99,9 +99,9 @@ void Axis::observe_volatile() {
 // A drive that no more holds what a client has written was restarted unseen, or is set up by somebody else: 3.4 wants
 // the method "written or configured since bring-up".
 void Axis::observe_homing_method() {
-  const Binding* method = core_.model.binding(Quantity::homing_method);
+  const model::Binding* method = core_.model.binding(Quantity::homing_method);
   const bool written = core_.homing_method && !core_.model.homing_method;
-  if (!written || method == nullptr || method->object == kNoObject) {
+  if (!written || method == nullptr || method->object == model::kNoObject) {
     holds_method_ = false;
     return;
   }
@@ -146,7 +146,7 @@ void Axis::publish() {
   const bool moves = zero_may_move();
   if (moves || zero_moves_) image_.zero_moved = core_.turn.now;
   zero_moves_ = moves;
-  ownership_.set_armed(core_.turn.link != LinkState::online || holds_motor(core_.facts().state));
+  ownership_.set_armed(core_.turn.link != LinkState::online || model::holds_motor(core_.facts().state));
   shown_.publish(jog_);
 }
 

@@ -21,7 +21,7 @@ std::optional<StopKind> kind_of(const WriteBatch& batch) {
   if (batch.command == Command::quick_stop) kind = StopKind::quick_stop;
   if (batch.command == Command::disable) kind = StopKind::disable;
   if (!stops_by_word(batch)) return kind;
-  const bool quick = request_of(*batch.controlword) == Request402::quick_stop;
+  const bool quick = model::request_of(*batch.controlword) == model::Request402::quick_stop;
   return std::max(kind.value_or(StopKind::halt), quick ? StopKind::quick_stop : StopKind::disable);
 }
 
@@ -85,7 +85,7 @@ void Axis::observe_owed() {
   }
   if (!status.known) return;
   owed_.link_back(core_.turn.now);
-  const auto state = state_of(static_cast<std::uint16_t>(status.number));
+  const auto state = model::state_of(static_cast<std::uint16_t>(status.number));
   take_back_enable(state);
   if (!owed_.owed() || carries_out_stop() || ends_what_is_owed()) return;
   tell_end(owed_.state_read(state, status.exchange, core_.shows_torque() && core_.facts().moving));
@@ -100,8 +100,8 @@ void Axis::watch_enable(const CommandSequence& unknown) {
 
 // Its client was told that it has failed, or that nobody knows: torque that comes after that, and that nobody has asked
 // for since, is taken away again.
-void Axis::take_back_enable(State402 state) {
-  if (state != State402::operation_enabled || !late_enable_.expected(core_.turn.now)) return;
+void Axis::take_back_enable(model::State402 state) {
+  if (state != model::State402::operation_enabled || !late_enable_.expected(core_.turn.now)) return;
   if (enable_is_asked() || owed_.owed() || stopping()) return;
   if (late_enable_.of_unknown(core_.turn.now))
     host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(Command::enable),
@@ -169,9 +169,10 @@ void Axis::observe_stop() {
   const Motion& motion = core_.motion;
   const bool holds = motion.stopping() && motion.stops() == stop->number && !motion.runs_raw();
   if (!holds || !core_.shows_torque()) return stop_watch_.end();
-  const Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
+  const model::Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
   const auto speed = core_.value(Quantity::velocity_actual);
-  if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online || velocity->object == kNoObject) return;
+  if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online || velocity->object == model::kNoObject)
+    return;
   const Duration period =
       std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
   if (!stop_watch_.goes_on(std::abs(*speed), core_.store[velocity->object].sent_at, core_.model.velocity_lag + period))

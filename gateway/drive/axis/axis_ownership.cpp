@@ -324,9 +324,9 @@ void Axis::end_expired_lease() {
 
 // By its state, its position and its velocity a motion is seen to end, to stand and to keep within its limits: one that
 // is seen no more is stopped as one whose client is gone.
-void Axis::on_blind(ObjectId object) {
+void Axis::on_blind(model::ObjectId object) {
   const auto gives = [&](Quantity quantity) {
-    const Binding* binding = core_.model.binding(quantity);
+    const model::Binding* binding = core_.model.binding(quantity);
     return binding != nullptr && binding->object == object;
   };
   const bool shows = core_.model.needs_for_state(object) || gives(Quantity::position_actual) ||

@@ -52,15 +52,15 @@ bool Axis::enable_is_asked(bool begun) const {
 // Bit 8 of a drive whose profile knows of no halt bit would be answered as done, and the motor would run on: what its
 // profile halts by is carried out in its place.
 bool Axis::asks_for_missing_halt(const WriteBatch& batch) const {
-  if (!batch.controlword || batch.command != Command::none || !enables(*batch.controlword)) return false;
-  const bool rises = (*batch.controlword & ~core_.controlword() & controlword::kHalt) != 0;
+  if (!batch.controlword || batch.command != Command::none || !model::enables(*batch.controlword)) return false;
+  const bool rises = (*batch.controlword & ~core_.controlword() & model::controlword::kHalt) != 0;
   return rises && core_.facts().enabled() && !halts_by_word(core_);
 }
 
 bool Axis::disable_waits() const {
   return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
     const WriteBatch& batch = p.command_sequence->batch();
-    const bool by_word = batch.controlword && request_of(*batch.controlword) != Request402::quick_stop;
+    const bool by_word = batch.controlword && model::request_of(*batch.controlword) != model::Request402::quick_stop;
     return p.command_sequence->is_stop() && !p.command_sequence->begun() &&
            (by_word || batch.command == Command::disable);
   });
@@ -81,7 +81,7 @@ bool Axis::run_is_asked() const {
     const WriteBatch& batch = p.command_sequence->batch();
     if (starts_motion(batch.command))
       return batch.command == Command::run_velocity || batch.command == Command::run_torque;
-    return batch.controlword && request_of(*batch.controlword) == Request402::enable_operation &&
+    return batch.controlword && model::request_of(*batch.controlword) == model::Request402::enable_operation &&
            core_.is_continuous(batch.mode.value_or(core_.mode_in_force()));
   });
 }

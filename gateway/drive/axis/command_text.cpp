@@ -38,18 +38,18 @@ std::string in_words(const AxisCore& core, Kind kind, std::int64_t value) {
 }
 
 std::string_view asked_by(std::uint16_t word) {
-  switch (request_of(word)) {
-    case Request402::disable_voltage:
+  switch (model::request_of(word)) {
+    case model::Request402::disable_voltage:
       return "disable voltage";
-    case Request402::quick_stop:
+    case model::Request402::quick_stop:
       return "quick stop";
-    case Request402::shutdown:
+    case model::Request402::shutdown:
       return "shutdown";
-    case Request402::switch_on:
+    case model::Request402::switch_on:
       return "switch on";
-    case Request402::enable_operation:
+    case model::Request402::enable_operation:
       return "enable operation";
-    case Request402::other:
+    case model::Request402::other:
       break;
   }
   return "bits 0 to 3 = 14";
@@ -57,9 +57,9 @@ std::string_view asked_by(std::uint16_t word) {
 
 std::string controlword_text(std::uint16_t word) {
   std::string out = fmt::format("controlword 0x{:04X} ({}", word, asked_by(word));
-  if ((word & controlword::kFaultReset) != 0) out += ", fault reset";
-  if ((word & controlword::kHalt) != 0) out += ", halt";
-  if ((word & controlword::kStart) != 0) out += ", bit 4 start";
+  if ((word & model::controlword::kFaultReset) != 0) out += ", fault reset";
+  if ((word & model::controlword::kHalt) != 0) out += ", halt";
+  if ((word & model::controlword::kStart) != 0) out += ", bit 4 start";
   return out + ")";
 }
 

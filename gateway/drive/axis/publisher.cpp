@@ -16,12 +16,12 @@ Instant confirmed_statusword(const AxisCore& core) {
 }
 
 // When the quantity was last confirmed: the oldest of its objects. kLongAgo where one of them never was.
-Instant confirmed_at(const AxisCore& core, const Binding& binding) {
+Instant confirmed_at(const AxisCore& core, const model::Binding& binding) {
   Instant oldest = kNever;
-  const auto look = [&](ObjectId id) {
+  const auto look = [&](model::ObjectId id) {
     // The gateway's own words are as good as what they are made from.
-    if (id != kNoObject && core.store[id].emulated) id = core.model.statusword;
-    if (id == kNoObject || core.store[id].refused) return;
+    if (id != model::kNoObject && core.store[id].emulated) id = core.model.statusword;
+    if (id == model::kNoObject || core.store[id].refused) return;
     oldest = std::min(oldest, core.store[id].known ? core.store[id].sent_at : kLongAgo);
   };
   const bool of_error = binding.quantity == Quantity::error_code;
@@ -29,38 +29,38 @@ Instant confirmed_at(const AxisCore& core, const Binding& binding) {
   // In a fault it is what this fault was named, as long as the statusword shows the fault.
   if (of_error && core.facts().faulted()) return status;
   if (of_error)
-    for (const ObjectId word : core.model.fault_words) look(word);
+    for (const model::ObjectId word : core.model.fault_words) look(word);
   look(binding.object);
-  for (const BitField& field : binding.bits) look(field.object);
+  for (const model::BitField& field : binding.bits) look(field.object);
   // A drive that has no word of its faults shows by its statusword that it has none.
   if (of_error && oldest == kNever) return status;
   return oldest == kNever ? kLongAgo : oldest;
 }
 
-bool refused(const AxisCore& core, const Binding& binding) {
+bool refused(const AxisCore& core, const model::Binding& binding) {
   // What a fault is named does not hang on one object.
   if (binding.quantity == Quantity::error_code) return false;
-  return binding.object != kNoObject && core.store[binding.object].refused;
+  return binding.object != model::kNoObject && core.store[binding.object].refused;
 }
 
 // The drive never says what it holds: what it was told is all that can be shown, and no younger than that.
-bool is_told_alone(const AxisCore& core, const Binding& binding) {
-  if (binding.object == kNoObject) return false;
-  const ObjectDef& object = core.object(binding.object);
+bool is_told_alone(const AxisCore& core, const model::Binding& binding) {
+  if (binding.object == model::kNoObject) return false;
+  const model::ObjectDef& object = core.object(binding.object);
   return !object.readable && !object.emulated && core.store.period(binding.object) == Duration{};
 }
 
-Duration stale_after(const AxisCore& core, const Binding& binding) {
-  if (binding.poll == PollClass::once || is_told_alone(core, binding)) return Duration::max();
+Duration stale_after(const AxisCore& core, const model::Binding& binding) {
+  if (binding.poll == model::PollClass::once || is_told_alone(core, binding)) return Duration::max();
   Duration period = core.drive.poll_period[static_cast<std::size_t>(binding.poll)];
-  const auto mapped = [&](ObjectId id) {
-    if (id != kNoObject) period = std::max(period, core.store.period(id));
+  const auto mapped = [&](model::ObjectId id) {
+    if (id != model::kNoObject) period = std::max(period, core.store.period(id));
   };
   mapped(binding.object);
-  for (const BitField& field : binding.bits) mapped(field.object);
+  for (const model::BitField& field : binding.bits) mapped(field.object);
   if (binding.quantity == Quantity::error_code) {
     mapped(core.model.statusword);
-    for (const ObjectId word : core.model.fault_words) mapped(word);
+    for (const model::ObjectId word : core.model.fault_words) mapped(word);
   }
   return std::max(kStaleAtLeast, 3 * period);
 }
@@ -73,8 +73,8 @@ std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
 }
 
 // Where the set-points of several modes lie in one object (Keya: 6081h), it holds that of the mode in force alone.
-bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
-  if (binding.object == kNoObject || core.object(binding.object).aliases.empty()) return false;
+bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const model::Binding& binding) {
+  if (binding.object == model::kNoObject || core.object(binding.object).aliases.empty()) return false;
   return is_target(binding.quantity) && setpoint_of_mode(facts.mode) != binding.quantity;
 }
 
@@ -88,19 +88,19 @@ bool held_back(const AxisCore& core, const AxisImage& image, Quantity quantity) 
 }
 
 /// Of what is shown: what is held back is as old as it is.
-Instant as_of(const AxisCore& core, const AxisImage& image, const Binding& binding) {
+Instant as_of(const AxisCore& core, const AxisImage& image, const model::Binding& binding) {
   return held_back(core, image, binding.quantity) ? image[binding.quantity].at : confirmed_at(core, binding);
 }
 
 /// The words of the fault before are no value of this one.
-bool of_fault_before(const AxisCore& core, const Binding& binding) {
-  const auto old = [&](const BitField& field) {
+bool of_fault_before(const AxisCore& core, const model::Binding& binding) {
+  const auto old = [&](const model::BitField& field) {
     return !core.store[field.object].refused && !core.names_cause(field.object);
   };
   return binding.quantity == Quantity::vendor_error && std::any_of(binding.bits.begin(), binding.bits.end(), old);
 }
 
-std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const Binding& binding) {
+std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const model::Binding& binding) {
   switch (binding.quantity) {
     case Quantity::error_code:
       return error_code(core, facts);
@@ -116,7 +116,7 @@ std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& f
     case Quantity::statusword: {
       const auto value = core.value(Quantity::statusword);
       if (!value || !core.motion.target_reached_masked()) return value;
-      return *value & ~static_cast<std::int64_t>(statusword::kTargetReached);
+      return *value & ~static_cast<std::int64_t>(model::statusword::kTargetReached);
     }
     default:
       if (is_of_another_mode(core, facts, binding) || of_fault_before(core, binding)) return std::nullopt;
@@ -140,14 +140,15 @@ std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const Axis
   set(AxisInput::ready, ready);
   set(AxisInput::enabled, facts.enabled());
   set(AxisInput::fault, facts.faulted());
-  set(AxisInput::warning, has(statusword::kWarning) || image.alarms != 0);
+  set(AxisInput::warning, has(model::statusword::kWarning) || image.alarms != 0);
   set(AxisInput::target_reached, facts.target_reached && !core.motion.target_reached_masked());
   set(AxisInput::homed, core.homed);
   set(AxisInput::moving, facts.moving);
-  set(AxisInput::limit_active, has(statusword::kInternalLimit) || (limits_valid && (digital & kLimitInputs) != 0));
-  set(AxisInput::quick_stop_active, facts.state == State402::quick_stop_active || core.motion.latched());
+  set(AxisInput::limit_active,
+      has(model::statusword::kInternalLimit) || (limits_valid && (digital & kLimitInputs) != 0));
+  set(AxisInput::quick_stop_active, facts.state == model::State402::quick_stop_active || core.motion.latched());
   // Bit 13 is the following error in position modes alone; in homing it means that homing failed.
-  set(AxisInput::following_error, has(statusword::kFollowingError) && facts.mode == 1);
+  set(AxisInput::following_error, has(model::statusword::kFollowingError) && facts.mode == 1);
   return out;
 }
 
@@ -164,7 +165,7 @@ std::uint32_t alarms_of(const AxisCore& core) {
 
 }  // namespace
 
-void show_model(const AxisModel& model, AxisImage& image) {
+void show_model(const model::AxisModel& model, AxisImage& image) {
   static_cast<Capabilities&>(image) = model;
   if (model.lease.on)
     for (const Command command : {Command::release, Command::take_over})
@@ -174,14 +175,14 @@ void show_model(const AxisModel& model, AxisImage& image) {
   image.rated_speed = model.rated_speed;
   for (const QuantityRow& row : quantity_table())
     image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
-  for (const Binding& binding : model.bindings)
+  for (const model::Binding& binding : model.bindings)
     image.limits[static_cast<std::size_t>(binding.quantity)] = binding.limits;
 }
 
 void show_state(const AxisCore& core, AxisImage& image) {
   const AxisFacts facts = core.facts();
   image.oldest_cyclic = kNever;
-  for (const Binding& binding : core.model.bindings) {
+  for (const model::Binding& binding : core.model.bindings) {
     Sample& sample = image[binding.quantity];
     // What the drive refused is not supported; a drive changed for another may have it again.
     const std::uint32_t mask = bit(binding.quantity);
@@ -203,7 +204,7 @@ void show_state(const AxisCore& core, AxisImage& image) {
     }
     const Duration limit = stale_after(core, binding);
     sample.valid = good && image.reachable() && (limit == Duration::max() || core.turn.now - at <= limit);
-    const bool cyclic = binding.poll == PollClass::fast || binding.poll == PollClass::normal;
+    const bool cyclic = binding.poll == model::PollClass::fast || binding.poll == model::PollClass::normal;
     if (cyclic && !refused(core, binding) && !is_told_alone(core, binding))
       image.oldest_cyclic = std::min(image.oldest_cyclic, at);
   }
@@ -215,14 +216,14 @@ void show_state(const AxisCore& core, AxisImage& image) {
   image.motion_state = core.motion.state();
   image.motion_id = core.motion.id();
   image.inputs = inputs_of(core, image, facts);
-  const bool halted = (core.controlword() & controlword::kHalt) != 0;
+  const bool halted = (core.controlword() & model::controlword::kHalt) != 0;
   image.level_coils = static_cast<std::uint16_t>((facts.enabled() ? 1 : 0) | (halted ? 1 << 3 : 0) |
                                                  (core.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
 }
 
 Instant stale_deadline(const AxisCore& core, const AxisImage& image) {
   Instant next = kNever;
-  for (const Binding& binding : core.model.bindings) {
+  for (const model::Binding& binding : core.model.bindings) {
     const Duration limit = stale_after(core, binding);
     const Instant at = as_of(core, image, binding);
     if (limit == Duration::max() || at == kLongAgo || core.turn.now - at > limit) continue;
@@ -235,7 +236,7 @@ namespace {
 
 /// What should make the drive notice a dead gateway, and is not in it.
 std::string unarmed(const AxisCore& core) {
-  for (const ObjectWrite& setup : core.drive.setup) {
+  for (const model::ObjectWrite& setup : core.drive.setup) {
     const auto& loss = core.drive.loss_objects;
     const ObjectState& s = core.store[setup.object];
     if (std::find(loss.begin(), loss.end(), setup.object) == loss.end() || (s.known && s.number == setup.raw)) continue;
@@ -249,7 +250,7 @@ std::string unarmed(const AxisCore& core) {
 
 std::string alarm_text(const AxisCore& core, AxisAlarm alarm) {
   if (alarm == AxisAlarm::no_comm_watchdog) return std::string(text(alarm)) + unarmed(core);
-  for (const Check& check : core.drive.checks) {
+  for (const model::Check& check : core.drive.checks) {
     const ObjectState& s = core.store[check.bad.object];
     const bool found = s.known && check.bad.holds(core.object(check.bad.object), static_cast<std::uint32_t>(s.number));
     if (check.alarm == alarm && found && !check.text.empty()) return std::string(text(alarm)) + ": " + check.text;

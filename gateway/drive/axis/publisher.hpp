@@ -12,7 +12,7 @@ namespace axisgate::drive {
 inline constexpr Duration kStaleAtLeast = std::chrono::milliseconds(300);
 
 /// What is fixed when the gateway starts.
-void show_model(const AxisModel& model, AxisImage& image);
+void show_model(const model::AxisModel& model, AxisImage& image);
 /// `image.link_state` is set by the caller before.
 void show_state(const AxisCore& core, AxisImage& image);
 /// When show_state() would show something else without a new sample: a value turns stale.

@@ -128,7 +128,7 @@ CommandSequence::Move CommandSequence::granted() {
     if (!plan_.at_end() && plan_.action().kind == Action::Kind::write && !writes_.verifying) {
       Action& write = plan_.actions[plan_.at];
       write.number = number_of(write);
-      write.copy_of = kNoObject;
+      write.copy_of = model::kNoObject;
       ++writes_.count;
       effect_.sending(core_);
       writes_.last = write;
@@ -142,8 +142,8 @@ CommandSequence::Move CommandSequence::granted() {
 // Stops are exempt: a worn memory cell is the smaller harm.
 bool CommandSequence::within_nvm_budget(const bus::Exchange& exchange) {
   if (exchange.access == bus::Access::read || phase_ == Phase::stop) return true;
-  const ObjectId id = core_.drive.find(exchange.object);
-  return core_.nvm.take(id == kNoObject ? core_.drive.nvm : core_.object(id).nvm, core_.turn.now);
+  const model::ObjectId id = core_.drive.find(exchange.object);
+  return core_.nvm.take(id == model::kNoObject ? core_.drive.nvm : core_.object(id).nvm, core_.turn.now);
 }
 
 CommandSequence::Move CommandSequence::advance() {
@@ -223,11 +223,11 @@ void CommandSequence::pop() {
 }
 
 std::int64_t CommandSequence::number_of(const Action& action) const {
-  return action.copy_of == kNoObject ? action.number : core_.store[action.copy_of].number;
+  return action.copy_of == model::kNoObject ? action.number : core_.store[action.copy_of].number;
 }
 
 CommandSequence::Move CommandSequence::exchange_for(const Action& action) const {
-  const ObjectDef& object = core_.object(core_.to_read(action.object));
+  const model::ObjectDef& object = core_.object(core_.to_read(action.object));
   bus::Exchange exchange{core_.drive.node, bus::Access::read, object.address, object.size, 0};
   if (action.kind == Action::Kind::write && !writes_.verifying) {
     exchange.access = bus::Access::write;
@@ -244,9 +244,9 @@ std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action&
     const Instant until = now + action.limit;
     awaiting_.begin(phase_ == Phase::stop ? stop_attempt_.begin_wait(by_motor, until, now + shows) : until);
   }
-  const ObjectId look_at =
+  const model::ObjectId look_at =
       action.effect == Effect::none ? action.until.object : EffectWatch::to_read(core_, action.effect);
-  if (look_at == kNoObject || has_come(action, core_.store[look_at])) {
+  if (look_at == model::kNoObject || has_come(action, core_.store[look_at])) {
     pop();
     return std::nullopt;
   }
@@ -285,7 +285,7 @@ bool CommandSequence::has_come(const Action& action, const ObjectState& looked_a
 
 // A reply is sent only when the image holds a statusword sampled after the last acknowledgement.
 std::optional<CommandSequence::Move> CommandSequence::advance_settle() const {
-  if (!begun_ || writes_.acknowledged_by == 0 || core_.model.statusword == kNoObject) return std::nullopt;
+  if (!begun_ || writes_.acknowledged_by == 0 || core_.model.statusword == model::kNoObject) return std::nullopt;
   const ObjectState& status = core_.store[core_.model.statusword];
   if (status.refused || (status.known && status.exchange > writes_.acknowledged_by)) return std::nullopt;
   return exchange_for(Action::read(core_.model.statusword));

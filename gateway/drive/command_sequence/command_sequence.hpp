@@ -104,7 +104,7 @@ class CommandSequence {
   }
   [[nodiscard]] bool tells_enable(const Action& action) const;
   [[nodiscard]] bool enables_uncommanded(const Action& action) const;
-  [[nodiscard]] bool is_command_of_motion(ObjectId object) const;
+  [[nodiscard]] bool is_command_of_motion(model::ObjectId object) const;
   [[nodiscard]] bool has_lost_torque() const;
   [[nodiscard]] bool within_nvm_budget(const bus::Exchange& exchange);
   void reach(const Action& action);
@@ -114,7 +114,7 @@ class CommandSequence {
   [[nodiscard]] bool repeat_stop();
   void on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
   void on_lost_write(const Action& action);
-  void on_read(ObjectId object, const bus::ExchangeResult& result);
+  void on_read(model::ObjectId object, const bus::ExchangeResult& result);
   void on_object(const bus::ExchangeResult& result);
   [[nodiscard]] std::int64_t number_of(const Action& action) const;
 

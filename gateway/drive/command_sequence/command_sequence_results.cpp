@@ -44,9 +44,9 @@ void CommandSequence::on_result(const bus::ExchangeResult& result, Instant sent_
   }
 }
 
-bool CommandSequence::is_command_of_motion(ObjectId object) const {
+bool CommandSequence::is_command_of_motion(model::ObjectId object) const {
   const auto& bindings = core_.model.bindings;
-  return moves_by_write(core_, object) && std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) {
+  return moves_by_write(core_, object) && std::any_of(bindings.begin(), bindings.end(), [&](const model::Binding& b) {
            return b.object == object && b.writable;
          });
 }
@@ -84,7 +84,7 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
 // Unknown, and never sent again blindly: read back before it is reported. A stop is sent again, unless it is a halt
 // that could enable a drive which has meanwhile restarted: that one is looked at first.
 void CommandSequence::on_lost_write(const Action& action) {
-  const ObjectDef& object = core_.object(action.object);
+  const model::ObjectDef& object = core_.object(action.object);
   const bool could_enable = tells_enable(action);
   core_.store.invalidate(action.object);
   if (!could_enable && repeat_stop()) return;
@@ -95,7 +95,7 @@ void CommandSequence::on_lost_write(const Action& action) {
   }
 }
 
-void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result) {
+void CommandSequence::on_read(model::ObjectId object, const bus::ExchangeResult& result) {
   const Action& action = plan_.action();
   if (result.code == Errc::refused_by_drive) {
     // What it refuses for now may be shown yet; the wait has its end.
@@ -123,7 +123,7 @@ void CommandSequence::on_read(ObjectId object, const bus::ExchangeResult& result
   }
   stop_attempt_.was_answered();
   if (writes_.verifying) {
-    const ObjectDef& def = core_.object(object);
+    const model::ObjectDef& def = core_.object(object);
     if (core_.store[object].number == def.number(wire_bits(number_of(action), def.size))) {
       pop();
     } else if (!repeat_stop()) {
@@ -157,7 +157,7 @@ Outcome CommandSequence::outcome_if_late() const {
 
 std::string CommandSequence::missed() const {
   std::string out = writes_.count == 0 ? "nothing was sent" : fmt::format("step {}", writes_.count);
-  const auto hex = [&](ObjectId id, std::int64_t number) {
+  const auto hex = [&](model::ObjectId id, std::int64_t number) {
     const std::uint8_t size = core_.object(id).size;
     return fmt::format("0x{:0{}X}", wire_bits(number, size), 2 * size);
   };
@@ -171,8 +171,8 @@ std::string CommandSequence::missed() const {
     return out + ": awaited that it slows down, read " +
            (speed ? fmt::format("velocity_actual {}", *speed) : std::string("nothing"));
   }
-  const Condition& until = plan_.action().until;
-  const bool negated = until.test == Condition::Test::not_equals || until.test == Condition::Test::not_in;
+  const model::Condition& until = plan_.action().until;
+  const bool negated = until.test == model::Condition::Test::not_equals || until.test == model::Condition::Test::not_in;
   constexpr std::uint32_t kFaultBit = 0x0008;  // of the statusword: a reset waits for it to go
   const ObjectState& state = core_.store[until.object];
   const bool since = state.known && state.exchange > writes_.acknowledged_by;
@@ -248,7 +248,7 @@ void CommandSequence::reach(const Action& action) {
       start(MotionKind::homing);
       break;
     case Mark::controlword_passed:
-      motion.passed(request_of(*batch_.controlword));
+      motion.passed(model::request_of(*batch_.controlword));
       break;
     case Mark::quick_stopped:
       if (!motion.latched()) motion.stop(true, core_.turn.now);

@@ -20,10 +20,10 @@ class MailboxAccess {
   /// A write that would wear out the drive's memory, of what the drive is known to hold: it is sent on change only.
   [[nodiscard]] static bool is_needless(const AxisCore& core, const ObjectRequest& request);
   /// What goes on the wire next.
-  [[nodiscard]] bus::Exchange next(const DriveModel& drive, const ObjectRequest& request) const;
+  [[nodiscard]] bus::Exchange next(const model::DriveModel& drive, const ObjectRequest& request) const;
   /// The result of the exchange given last. What was read, or how it was refused, goes into `answer`.
-  [[nodiscard]] Outcome take(const DriveModel& drive, const ObjectRequest& request, const bus::ExchangeResult& result,
-                             BatchResult& answer);
+  [[nodiscard]] Outcome take(const model::DriveModel& drive, const ObjectRequest& request,
+                             const bus::ExchangeResult& result, BatchResult& answer);
 
   /// Nothing is left to send.
   [[nodiscard]] bool done() const { return done_; }

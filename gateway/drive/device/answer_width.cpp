@@ -5,26 +5,26 @@
 
 namespace axisgate::drive {
 
-bool moves_by(const DriveModel& model, ObjectId object) {
-  const auto same = [&](ObjectId bound) {
+bool moves_by(const model::DriveModel& model, model::ObjectId object) {
+  const auto same = [&](model::ObjectId bound) {
     if (bound == object) return true;
     const auto& aliases = model.object(object).aliases;
     return std::find(aliases.begin(), aliases.end(), bound) != aliases.end();
   };
-  const auto counts = [&](const Binding& binding) {
+  const auto counts = [&](const model::Binding& binding) {
     const Kind kind = row(binding.quantity).kind;
     const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
     return of_motion && same(binding.object);
   };
-  return std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) {
+  return std::any_of(model.axes.begin(), model.axes.end(), [&](const model::AxisModel& axis) {
     return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
   });
 }
 
-std::optional<std::int64_t> narrowed(const DriveModel& model, ObjectId id, const bus::ReplyField& field) {
-  const ObjectDef& object = model.object(id);
-  if (!is_canopen(model) || field.size <= object.size || moves_by(model, id)) return std::nullopt;
-  ObjectDef wide;
+std::optional<std::int64_t> narrowed(const model::DriveModel& model, model::ObjectId id, const bus::ReplyField& field) {
+  const model::ObjectDef& object = model.object(id);
+  if (!model::is_canopen(model) || field.size <= object.size || moves_by(model, id)) return std::nullopt;
+  model::ObjectDef wide;
   wide.size = field.size;
   wide.is_signed = object.is_signed;
   const std::int64_t number = object.number(field.raw);

@@ -13,11 +13,11 @@
 namespace axisgate::drive {
 
 /// A position, a velocity or an acceleration of a motor, by whichever of its names.
-[[nodiscard]] bool moves_by(const DriveModel& model, ObjectId object);
+[[nodiscard]] bool moves_by(const model::DriveModel& model, model::ObjectId object);
 
 /// The object's number, where `field` has more bytes than it and those above are zero or, of a signed one, its sign. On
 /// CANopen alone: the other protocols' drives have no such servers.
-[[nodiscard]] std::optional<std::int64_t> narrowed(const DriveModel& model, ObjectId object,
+[[nodiscard]] std::optional<std::int64_t> narrowed(const model::DriveModel& model, model::ObjectId object,
                                                    const bus::ReplyField& field);
 
 }  // namespace axisgate::drive

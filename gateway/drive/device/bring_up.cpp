@@ -7,23 +7,23 @@
 
 namespace axisgate::drive {
 
-BringUp::BringUp(const DriveModel& model, Duration timeout)
+BringUp::BringUp(const model::DriveModel& model, Duration timeout)
     : model_(model), identity_(model), node_(model), start_(timeout) {
-  const auto add = [&](ObjectId id) {
-    if (id != kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
+  const auto add = [&](model::ObjectId id) {
+    if (id != model::kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
   };
-  for (const AxisModel& axis : model.axes)
-    for (const ObjectId id : axis.state_sources) add(id);  // the state comes before everything
-  for (const ObjectWrite& setup : model.setup)
+  for (const model::AxisModel& axis : model.axes)
+    for (const model::ObjectId id : axis.state_sources) add(id);  // the state comes before everything
+  for (const model::ObjectWrite& setup : model.setup)
     if (model.object(setup.object).readable) add(setup.object);
-  for (const FactoryWrite& setup : model.factory_writes) add(setup.object);
+  for (const model::FactoryWrite& setup : model.factory_writes) add(setup.object);
   // What changes fastest is read last: the drive goes online with values that are still good.
   std::vector<PollItem> items = poll_items(model);
   std::stable_sort(items.begin(), items.end(),
                    [](const PollItem& a, const PollItem& b) { return a.poll_class > b.poll_class; });
   for (const PollItem& item : items) {
     add(item.object);
-    if (item.poll_class == PollClass::fast) confirmed_.push_back(item.object);
+    if (item.poll_class == model::PollClass::fast) confirmed_.push_back(item.object);
   }
 }
 
@@ -45,11 +45,11 @@ void BringUp::begin() {
 }
 
 bool BringUp::any_enabled(const ObjectStore& store) const {
-  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
+  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const model::AxisModel& axis) {
     const ObjectState& s = store[axis.statusword];
     if (!s.known) return false;
-    const State402 state = state_of(static_cast<std::uint16_t>(s.number));
-    return holds_motor(state);
+    const model::State402 state = model::state_of(static_cast<std::uint16_t>(s.number));
+    return model::holds_motor(state);
   });
 }
 
@@ -62,37 +62,37 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
     ++read_at_;
   }
   if (is_node())
-    if (const auto identity = identity_.next()) return Next{kNoObject, false, 0, identity};
+    if (const auto identity = identity_.next()) return Next{model::kNoObject, false, 0, identity};
   // Everything else was read meanwhile: somebody may have enabled it since its state was read, and on a busy line what
   // was read first has grown stale.
   if (!confirm_after_) confirm_after_ = store.exchange();
-  for (const ObjectId id : confirmed_)
+  for (const model::ObjectId id : confirmed_)
     if (!store[id].refused && store[id].exchange <= *confirm_after_) return Next{id, false, 0};
   adopted_ = any_enabled(store);
   if (adopted_ || !identity_.mismatch().empty() || lacks_needed(store)) return std::nullopt;
   if (const auto setup = next_setup(store)) return setup;
   if (is_node())
-    if (const auto node = node_.next()) return Next{kNoObject, false, 0, node};
+    if (const auto node = node_.next()) return Next{model::kNoObject, false, 0, node};
   return std::nullopt;
 }
 
 // It is not what its profile says: nothing of that profile is written to it.
 bool BringUp::lacks_needed(const ObjectStore& store) const {
   for (std::size_t i = 0; i < model_.objects.size(); ++i)
-    if (const auto id = static_cast<ObjectId>(i); store[id].refused && model_.needs(id)) return true;
+    if (const auto id = static_cast<model::ObjectId>(i); store[id].refused && model_.needs(id)) return true;
   return false;
 }
 
-std::vector<ObjectWrite> BringUp::setup_due(const ObjectStore& store) const {
-  return setup_writes(model_,
-                      [&](ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
+std::vector<model::ObjectWrite> BringUp::setup_due(const ObjectStore& store) const {
+  return model::setup_writes(
+      model_, [&](model::ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
 }
 
 std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
   // Judged once: what is written here must not make its own reason go away.
   if (!setup_) setup_ = setup_due(store);
   while (setup_at_ < setup_->size()) {
-    const ObjectWrite& setup = (*setup_)[setup_at_];
+    const model::ObjectWrite& setup = (*setup_)[setup_at_];
     if (read_back_ && !store[setup.object].refused) return Next{setup.object, false, 0};
     read_back_ = false;
     const bool holds = store[setup.object].known && store[setup.object].number == setup.raw;
@@ -141,8 +141,8 @@ void BringUp::begin_amending(const ObjectStore& store, Instant now) {
   amend_due_ = kNever;
   read_back_ = setup_written_ = false;
   setup_ = std::exchange(refused_for_now_, {});
-  std::erase_if(*setup_, [due = setup_due(store)](const ObjectWrite& refused) {
-    return std::ranges::none_of(due, [&](const ObjectWrite& each) { return each.object == refused.object; });
+  std::erase_if(*setup_, [due = setup_due(store)](const model::ObjectWrite& refused) {
+    return std::ranges::none_of(due, [&](const model::ObjectWrite& each) { return each.object == refused.object; });
   });
   setup_at_ = 0;
   write_again_ = now;

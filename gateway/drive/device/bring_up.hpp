@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/device/node_setup.hpp"
 #include "gateway/drive/device/node_start.hpp"
 #include "gateway/drive/device/object_tries.hpp"
@@ -21,11 +22,11 @@ namespace axisgate::drive {
 class BringUp {
  public:
   /// `timeout`: of its bus.
-  BringUp(const DriveModel& model, Duration timeout);
+  BringUp(const model::DriveModel& model, Duration timeout);
 
   void begin();
   struct Next {
-    ObjectId object = kNoObject;
+    model::ObjectId object = model::kNoObject;
     bool write = false;
     std::int64_t number = 0;
     std::optional<bus::Exchange> exchange{};  ///< instead of an object of the model: identity, mapping, NMT
@@ -58,7 +59,7 @@ class BringUp {
   [[nodiscard]] bool adopted() const { return adopted_; }
   void leave() { adopted_ = false; }
   /// Setup values that the drive does not hold although they were written: they are named in an event.
-  [[nodiscard]] const std::vector<ObjectId>& unheld() const { return unheld_; }
+  [[nodiscard]] const std::vector<model::ObjectId>& unheld() const { return unheld_; }
   [[nodiscard]] bool has_setup() const { return !model_.setup.empty() || !model_.factory_writes.empty() || is_node(); }
   /// How the drive differs from the configured one; empty: it does not.
   [[nodiscard]] const std::string& mismatch() const { return identity_.mismatch(); }
@@ -80,19 +81,19 @@ class BringUp {
 
  private:
   [[nodiscard]] bool any_enabled(const ObjectStore& store) const;
-  [[nodiscard]] bool is_node() const { return is_canopen(model_); }
+  [[nodiscard]] bool is_node() const { return model::is_canopen(model_); }
   [[nodiscard]] bool lacks_needed(const ObjectStore& store) const;
-  [[nodiscard]] std::vector<ObjectWrite> setup_due(const ObjectStore& store) const;
+  [[nodiscard]] std::vector<model::ObjectWrite> setup_due(const ObjectStore& store) const;
   [[nodiscard]] std::optional<Next> next_setup(const ObjectStore& store);
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   IdentityCheck identity_;
   NodeSetup node_;
   NodeStart start_;
-  std::vector<ObjectId> reads_;
-  std::vector<ObjectId> confirmed_;  ///< class fast, the statuswords among them: read once more at the end
+  std::vector<model::ObjectId> reads_;
+  std::vector<model::ObjectId> confirmed_;  ///< class fast, the statuswords among them: read once more at the end
   std::size_t read_at_ = 0;
   std::optional<std::uint64_t> confirm_after_;  ///< exchange: the state is read once more before the first setup write
-  std::optional<std::vector<ObjectWrite>> setup_;  ///< as it is due by what was read; none: not judged yet
+  std::optional<std::vector<model::ObjectWrite>> setup_;  ///< as it is due by what was read; none: not judged yet
   std::size_t setup_at_ = 0;
   bool setup_written_ = false;
   bool read_back_ = false;
@@ -100,13 +101,13 @@ class BringUp {
   int exchange_tries_ = 0;  ///< in a row
   int write_tries_ = 0;
   Instant write_again_ = kLongAgo;
-  std::vector<ObjectWrite> refused_for_now_;
+  std::vector<model::ObjectWrite> refused_for_now_;
   Duration amend_pause_{};
   Instant amend_due_ = kNever;
   bool amending_ = false;
   std::string lacks_;
   bool completed_ = false;
-  std::vector<ObjectId> unheld_;
+  std::vector<model::ObjectId> unheld_;
 };
 
 }  // namespace axisgate::drive

@@ -15,12 +15,12 @@ constexpr int kModePosition = 1, kModeTorque = 4;
 bool ControlFrame::carries(const bus::Exchange& write) const {
   return write.access == bus::Access::write &&
          std::any_of(model_.composed.begin(), model_.composed.end(),
-                     [&](ObjectId id) { return model_.object(id).address == write.object; });
+                     [&](model::ObjectId id) { return model_.object(id).address == write.object; });
 }
 
-ControlFrame::Motor ControlFrame::motor(bus::AxisSlot slot) const {
+ControlFrame::Motor ControlFrame::motor(AxisSlot slot) const {
   Motor out;
-  for (const ObjectId id : model_.composed)
+  for (const model::ObjectId id : model_.composed)
     if (model_.object(id).slot == slot) (model_.object(id).turns_on ? out.on : out.value) = id;
   return out;
 }
@@ -50,10 +50,9 @@ std::optional<std::int64_t> ControlFrame::value(const ObjectState& commanded, co
 }
 
 std::optional<ControlFrame::Desired> ControlFrame::desired(const bus::Exchange& write, const ObjectStore& store,
-                                                           bus::AxisSlot slot, const MotorShows& shows,
-                                                           bool stop) const {
+                                                           AxisSlot slot, const MotorShows& shows, bool stop) const {
   const Motor fields = motor(slot);
-  if (fields.on == kNoObject || fields.value == kNoObject) return Desired{};
+  if (fields.on == model::kNoObject || fields.value == model::kNoObject) return Desired{};
   const bool written_here = model_.object(fields.on).address == write.object;
   const bool is_on = written_here ? write.raw != 0 : on(store[fields.on], shows);
   if (model_.object(fields.value).address == write.object) return Desired{is_on, 0};
@@ -65,8 +64,8 @@ std::optional<ControlFrame::Desired> ControlFrame::desired(const bus::Exchange& 
 std::optional<bus::Exchange> ControlFrame::complete(const bus::Exchange& write, const ObjectStore& store,
                                                     const std::vector<MotorShows>& motors, bool stop) const {
   bus::Exchange out = write;
-  for (const ObjectId id : model_.composed) {
-    const ObjectDef& field = model_.object(id);
+  for (const model::ObjectId id : model_.composed) {
+    const model::ObjectDef& field = model_.object(id);
     if (field.address == write.object) continue;
     Desired wanted{};  // of a motor that no axis is configured for: off
     if (field.slot < motors.size()) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/state/object_store.hpp"
 
 namespace axisgate::drive {
@@ -26,7 +27,7 @@ struct MotorShows {
 
 class ControlFrame {
  public:
-  explicit ControlFrame(const DriveModel& model) : model_(model) {}
+  explicit ControlFrame(const model::DriveModel& model) : model_(model) {}
 
   /// The write is one of a field of the frame.
   [[nodiscard]] bool carries(const bus::Exchange& write) const;
@@ -37,21 +38,21 @@ class ControlFrame {
 
  private:
   struct Motor {
-    ObjectId on = kNoObject;
-    ObjectId value = kNoObject;
+    model::ObjectId on = model::kNoObject;
+    model::ObjectId value = model::kNoObject;
   };
-  [[nodiscard]] Motor motor(bus::AxisSlot slot) const;
+  [[nodiscard]] Motor motor(AxisSlot slot) const;
   struct Desired {
     bool on = false;
     std::int64_t value = 0;
   };
-  [[nodiscard]] std::optional<Desired> desired(const bus::Exchange& write, const ObjectStore& store, bus::AxisSlot slot,
+  [[nodiscard]] std::optional<Desired> desired(const bus::Exchange& write, const ObjectStore& store, AxisSlot slot,
                                                const MotorShows& shows, bool stop) const;
   [[nodiscard]] bool on(const ObjectState& commanded, const MotorShows& shows) const;
   [[nodiscard]] std::optional<std::int64_t> value(const ObjectState& commanded, const MotorShows& shows, bool on,
                                                   bool stop) const;
 
-  const DriveModel& model_;
+  const model::DriveModel& model_;
 };
 
 }  // namespace axisgate::drive

@@ -23,7 +23,7 @@ void Disarming::begin(const ObjectStore& store, bool broken_off) {
   at_ = 0;
 }
 
-bool Disarming::is_armed(const ObjectWrite& entry, const ObjectStore& store) {
+bool Disarming::is_armed(const model::ObjectWrite& entry, const ObjectStore& store) {
   const ObjectState& now = store[entry.object];
   return now.known && !now.refused && now.number == entry.raw;
 }
@@ -38,8 +38,8 @@ void Disarming::begin_look(const ObjectStore& store) {
 void Disarming::gather_states() {
   outcome_ = Outcome::unknown;  // till it is known
   states_.clear();
-  for (const AxisModel& axis : model_.axes)
-    for (const ObjectId id : axis.state_sources)
+  for (const model::AxisModel& axis : model_.axes)
+    for (const model::ObjectId id : axis.state_sources)
       if (std::ranges::find(states_, id) == states_.end()) states_.push_back(id);
 }
 
@@ -62,11 +62,11 @@ void Disarming::look(Phase phase, const ObjectStore& store) {
 }
 
 bool Disarming::holds_any_motor(const ObjectStore& store) const {
-  return std::ranges::any_of(model_.axes, [&](const AxisModel& axis) {
+  return std::ranges::any_of(model_.axes, [&](const model::AxisModel& axis) {
     const ObjectState& status = store[axis.statusword];
     if (!status.known) return true;
-    const State402 state = state_of(static_cast<std::uint16_t>(status.number));
-    return holds_motor(state) || state == State402::fault_reaction_active;
+    const model::State402 state = model::state_of(static_cast<std::uint16_t>(status.number));
+    return model::holds_motor(state) || state == model::State402::fault_reaction_active;
   });
 }
 
@@ -91,7 +91,7 @@ std::optional<Disarming::Next> Disarming::next() const {
       return Next{entries_[at_].object, true, 0};
     case Phase::put_back: {
       // The first of the setup list first: the drive's reaction comes back last, when it knows what to watch for.
-      const ObjectWrite& entry = entries_[cleared_ - 1 - at_];
+      const model::ObjectWrite& entry = entries_[cleared_ - 1 - at_];
       return Next{entry.object, true, entry.raw};
     }
     case Phase::over:
@@ -106,7 +106,7 @@ void Disarming::on_result(const bus::ExchangeResult& result, bool trusted, const
     case Phase::look_at_entries:
       if (!answered) return put_back(Outcome::unknown);
       if (++at_ < entries_.size()) return;
-      std::erase_if(entries_, [&](const ObjectWrite& entry) { return !is_armed(entry, store); });
+      std::erase_if(entries_, [&](const model::ObjectWrite& entry) { return !is_armed(entry, store); });
       return entries_.empty() ? end(Outcome::nothing_to_do) : look(Phase::look, store);
     case Phase::look:
     case Phase::look_again:

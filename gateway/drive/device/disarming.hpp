@@ -30,7 +30,7 @@ class Disarming {
     uncertain  ///< it should be armed, and did not answer when it was put back
   };
 
-  explicit Disarming(const DriveModel& model) : model_(model) {}
+  explicit Disarming(const model::DriveModel& model) : model_(model) {}
 
   /// `store`: of a drive that is online; what is read from now on counts. `broken_off`: it was being brought up, and
   /// which entries were written by then is read first.
@@ -40,7 +40,7 @@ class Disarming {
   /// Nothing can be asked of the drive: its state is unknown.
   void give_up() { end(Outcome::unknown); }
   struct Next {
-    ObjectId object = kNoObject;
+    model::ObjectId object = model::kNoObject;
     bool write = false;
     std::int64_t number = 0;
   };
@@ -57,14 +57,15 @@ class Disarming {
   void look(Phase phase, const ObjectStore& store);
   void gather_states();
   void next_state(const ObjectStore& store);
-  [[nodiscard]] static bool is_armed(const ObjectWrite& entry, const ObjectStore& store);
+  [[nodiscard]] static bool is_armed(const model::ObjectWrite& entry, const ObjectStore& store);
   [[nodiscard]] bool holds_any_motor(const ObjectStore& store) const;
 
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   Phase phase_ = Phase::over;
   Outcome outcome_ = Outcome::nothing_to_do;
-  std::vector<ObjectWrite> entries_;  ///< in the order in which they are cleared: the last one of the setup list first
-  std::vector<ObjectId> states_;      ///< what the statuswords of all axes are made from
+  std::vector<model::ObjectWrite>
+      entries_;  ///< in the order in which they are cleared: the last one of the setup list first
+  std::vector<model::ObjectId> states_;  ///< what the statuswords of all axes are made from
   std::size_t at_ = 0;
   std::size_t cleared_ = 0;  ///< so many entries may hold 0
   int tries_ = 0;

@@ -9,7 +9,7 @@
 
 namespace axisgate::drive {
 
-Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
+Drive::Drive(model::DriveModel model, DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
              EventRing& events)
     : model_(std::move(model)),
       slot_(slot),
@@ -20,18 +20,18 @@ Drive::Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> imag
       bring_up_(model_, bus.settings().timeout),
       control_(model_, store_),
       end_(model_),
-      presence_(is_canopen(model_), bus.settings().timeout),
+      presence_(model::is_canopen(model_), bus.settings().timeout),
       timer_(runtime.make_timer([this] { on_time(); })) {
   assert(images.size() == model_.axes.size());
   AxisHost& host = *this;
   for (std::size_t i = 0; i < images.size(); ++i)
-    axes_.push_back(std::make_unique<Axis>(model_, static_cast<bus::AxisSlot>(i), store_, turn_, *images[i], host));
+    axes_.push_back(std::make_unique<Axis>(model_, static_cast<AxisSlot>(i), store_, turn_, *images[i], host));
   begin_turn();
   bus_.attach(slot_, *this);
   after_event();
 }
 
-std::optional<BatchResult> Drive::submit(bus::AxisSlot axis, const WriteBatch& batch, BatchCallback on_result) {
+std::optional<BatchResult> Drive::submit(AxisSlot axis, const WriteBatch& batch, BatchCallback on_result) {
   begin_turn();
   auto result = axes_[axis]->submit(batch, std::move(on_result));
   // Callbacks of others wait for the next turn of the loop: nobody is called from inside submit().
@@ -89,7 +89,7 @@ std::optional<bus::Exchange> Drive::exchange_of(const bus::Arbiter::Grant& grant
   }
   if (owner != nullptr) {
     const auto look = control_.concerned() ? control_.look_before(control_turn(), grant.priority == bus::Priority::stop)
-                                           : std::optional<ObjectId>();
+                                           : std::optional<model::ObjectId>();
     if (look) {
       on_wire_.becomes_own();
       return read_of(model_, *look);
@@ -157,7 +157,7 @@ void Drive::widen(bus::Exchange& exchange) {
   reads_.widen(exchange, on_wire_.read, whom, turn_.now);
 }
 
-bus::Exchange Drive::write(ObjectId object, std::int64_t number) const {
+bus::Exchange Drive::write(model::ObjectId object, std::int64_t number) const {
   bus::Exchange exchange = read_of(model_, object);
   exchange.access = bus::Access::write;
   exchange.size = reads_.width(object);
@@ -186,7 +186,8 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
     }
   }
   on_given_up();
-  const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
+  const model::ObjectId written =
+      exchange.access == bus::Access::write ? model_.find(exchange.object) : model::kNoObject;
   control_.on_result(exchange, result, asked.keeps_alive, asked.read.sent_at, trusted, turn_.now);
   if (asked.job != 0) {
     bool owned = asked.job == jobs_.setup;
@@ -200,15 +201,15 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       owned = true;
       asked.axis->on_result(asked.job, result, asked.read.sent_at, trusted);
     }
-    if (!owned && written != kNoObject) on_write_without_owner(exchange, result, trusted);
+    if (!owned && written != model::kNoObject) on_write_without_owner(exchange, result, trusted);
   }
-  if (written != kNoObject && result.code == Errc::ok) reads_.written(written, turn_.now);
+  if (written != model::kNoObject && result.code == Errc::ok) reads_.written(written, turn_.now);
   after_event();
 }
 
 // Whoever asked was given up while it was on the wire: what the drive holds now must be known all the same.
 void Drive::on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted) {
-  const ObjectId id = model_.find(exchange.object);
+  const model::ObjectId id = model_.find(exchange.object);
   if (result.code == Errc::ok && trusted)
     store_.acknowledged(id, model_.object(id).number(exchange.raw), on_wire_.read.sent_at);
   else if (result.code != Errc::refused_by_drive)
@@ -308,7 +309,7 @@ void Drive::bring_up_to_date() {
   reads_.refresh(turn_.now);
   if (brought_up()) {
     for (auto& axis : axes_)
-      for (const Check& check : model_.checks) axis->set_alarm(check.alarm, false);
+      for (const model::Check& check : model_.checks) axis->set_alarm(check.alarm, false);
     judge_checks();
     leave_adoption();
     amend_setup();

@@ -23,13 +23,13 @@ namespace axisgate::drive {
 class Drive final : public bus::BusDrive, private AxisHost {
  public:
   /// `images`: one per axis of the model, in its order. Everything referred to outlives the drive.
-  Drive(DriveModel model, bus::DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
+  Drive(model::DriveModel model, DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
         EventRing& events);
 
-  [[nodiscard]] std::optional<BatchResult> submit(bus::AxisSlot axis, const WriteBatch& batch, BatchCallback on_result);
-  [[nodiscard]] const Axis& axis(bus::AxisSlot slot) const { return *axes_[slot]; }
+  [[nodiscard]] std::optional<BatchResult> submit(AxisSlot axis, const WriteBatch& batch, BatchCallback on_result);
+  [[nodiscard]] const Axis& axis(AxisSlot slot) const { return *axes_[slot]; }
   [[nodiscard]] std::size_t axis_count() const { return axes_.size(); }
-  [[nodiscard]] const DriveModel& model() const { return model_; }
+  [[nodiscard]] const model::DriveModel& model() const { return model_; }
   [[nodiscard]] LinkState link_state() const { return turn_.link; }
   [[nodiscard]] const ObjectStore& store() const { return store_; }
   void client_gone(ClientId client);
@@ -56,7 +56,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
     bus::JobId job = 0;    ///< 0: a poll or probe
     Axis* axis = nullptr;  ///< whose bus job it is; null: the drive's own
     DriveReads::Asked read{};
-    std::optional<bus::AxisSlot> keeps_alive{};  ///< a repetition for this axis, or the look before it
+    std::optional<AxisSlot> keeps_alive{};  ///< a repetition for this axis, or the look before it
     /// The bus job keeps its turn; this exchange is the drive's own.
     void becomes_own() {
       job = 0;
@@ -75,7 +75,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// Each call from outside is a turn of its own: what happens in it happens at one instant.
   void begin_turn() { turn_.now = bus_.now(); }
   /// Null: a bus job of the drive's own, or a poll.
-  [[nodiscard]] Axis* axis_of(bus::AxisSlot slot) { return slot == bus::kNoAxis ? nullptr : axes_[slot].get(); }
+  [[nodiscard]] Axis* axis_of(AxisSlot slot) { return slot == kNoAxis ? nullptr : axes_[slot].get(); }
 
   // AxisHost
   [[nodiscard]] Queued queue(bus::BusJob job) override;
@@ -87,7 +87,7 @@ class Drive final : public bus::BusDrive, private AxisHost {
   /// A bus job of the drive's own; 0: there is no room for it.
   [[nodiscard]] bus::JobId queue_own(bus::Priority priority);
   /// In the width that the drive answered with last.
-  [[nodiscard]] bus::Exchange write(ObjectId object, std::int64_t number) const;
+  [[nodiscard]] bus::Exchange write(model::ObjectId object, std::int64_t number) const;
   void widen(bus::Exchange& exchange);
   [[nodiscard]] std::optional<bus::Exchange> probe();
   /// `job`: whose turn it takes; it waits where silence must be kept instead.
@@ -124,11 +124,11 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void end_bring_up();
   /// Of the exchange that has ended: objects may have been given up by it.
   void on_given_up();
-  void tell_given_up(ObjectId object);
+  void tell_given_up(model::ObjectId object);
   void judge_given_up();
   void amend_setup();
   void end_amending();
-  [[nodiscard]] std::string lacking(ObjectId object) const;
+  [[nodiscard]] std::string lacking(model::ObjectId object) const;
   void tell_mismatch(const std::string& lacks);
   void judge_profile();
   void judge_checks();
@@ -153,8 +153,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void on_time();
   [[nodiscard]] bool brought_up() const { return turn_.link == LinkState::online || turn_.link == LinkState::suspect; }
 
-  DriveModel model_;  ///< its own: constants that are read from the drive change scales and limits
-  bus::DriveSlot slot_;
+  model::DriveModel model_;  ///< its own: constants that are read from the drive change scales and limits
+  DriveSlot slot_;
   bus::Bus& bus_;
   EventRing& events_;
   Turn turn_{.now = kLongAgo, .link = LinkState::link_down};

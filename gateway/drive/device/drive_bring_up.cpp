@@ -81,13 +81,13 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
     else
       bring_up_.written();
     // Whether it can be read is another question now.
-    if (const ObjectId id = model_.find(exchange.object); result.code == Errc::ok && store_[id].refused)
+    if (const model::ObjectId id = model_.find(exchange.object); result.code == Errc::ok && store_[id].refused)
       store_.forget(id);
   } else if (result.code == Errc::ok) {
     bring_up_.read_back_answered();
   }
-  const ObjectId asked = model_.find(exchange.object);
-  const bool of_state = !was_write && asked != kNoObject && model_.needs_for_state(asked);
+  const model::ObjectId asked = model_.find(exchange.object);
+  const bool of_state = !was_write && asked != model::kNoObject && model_.needs_for_state(asked);
   // A drive whose statusword has another width is none we can speak for: it stays in setup and is asked again, slowly.
   if (!of_state || result.code != Errc::ok || !store_[asked].refused) return;
   tell_mismatch(lacking(asked));
@@ -97,9 +97,9 @@ void Drive::carry_on_bring_up(const bus::Exchange& exchange, const bus::Exchange
 namespace {
 
 // What a limit is held against, and cannot be read.
-std::string limited_by(const DriveModel& model, ObjectId id) {
-  for (const AxisModel& axis : model.axes)
-    for (const Binding& binding : axis.bindings)
+std::string limited_by(const model::DriveModel& model, model::ObjectId id) {
+  for (const model::AxisModel& axis : model.axes)
+    for (const model::Binding& binding : axis.bindings)
       if (binding.object == id && binding.limited && is_speed_of_motion(binding.quantity))
         return fmt::format("; {} has a limit: no motion by it starts", row(binding.quantity).name);
   return {};
@@ -108,10 +108,10 @@ std::string limited_by(const DriveModel& model, ObjectId id) {
 }  // namespace
 
 // One line for each object, until it answers again.
-void Drive::tell_given_up(ObjectId id) {
-  const ObjectDef& object = model_.object(id);
+void Drive::tell_given_up(model::ObjectId id) {
+  const model::ObjectDef& object = model_.object(id);
   const auto& refusal = reads_.tries().refusal(id);
-  const Axis& axis = *axes_[object.slot == bus::kNoAxis ? 0 : object.slot];
+  const Axis& axis = *axes_[object.slot == kNoAxis ? 0 : object.slot];
   event(axis.core().model.number, EventKind::warning, 0,
         fmt::format("{} ({}) of node {} {} three times in a row, though the drive answers others: it is for {}; {}",
                     object.name, place_of(model_, id), model_.node,
@@ -145,7 +145,7 @@ void Drive::judge_given_up() {
   if (brought_up() || turn_.link == LinkState::setup) judge_profile();
 }
 
-std::string Drive::lacking(ObjectId object) const {
+std::string Drive::lacking(model::ObjectId object) const {
   const bool silent = reads_.tries().given_up(object) && !reads_.tries().refusal(object);
   return fmt::format("{}{} (0x{:04X})", silent ? "to answer " : "", model_.object(object).name,
                      model_.object(object).address.index);
@@ -167,7 +167,7 @@ void Drive::tell_mismatch(const std::string& lacks) {
 void Drive::judge_profile() {
   std::string lacks;
   for (std::size_t i = 0; i < model_.objects.size(); ++i) {
-    const auto id = static_cast<ObjectId>(i);
+    const auto id = static_cast<model::ObjectId>(i);
     const bool another = store_[id].unlike && moves_by(model_, id);
     if (another || ((store_[id].refused || reads_.tries().given_up(id)) && model_.needs(id)))
       lacks += (lacks.empty() ? "" : ", ") + lacking(id);
@@ -183,7 +183,7 @@ void Drive::end_bring_up() {
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::identity_mismatch, !mismatch.empty());
   judge_profile();
   if (!bring_up_.adopted() && bring_up_.is_configured()) map_values();
-  for (const ObjectId id : bring_up_.unheld())
+  for (const model::ObjectId id : bring_up_.unheld())
     event(axes_.front()->core().model.number, EventKind::warning, 0,
           "setup: the drive does not hold what was written to " + model_.object(id).name);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, bring_up_.adopted());
@@ -197,11 +197,11 @@ void Drive::end_bring_up() {
 }
 
 void Drive::judge_checks() {
-  for (const Check& check : model_.checks) {
+  for (const model::Check& check : model_.checks) {
     const ObjectState& s = store_[check.bad.object];
     if (!s.known) continue;
     for (auto& axis : axes_) {
-      const bool mine = check.slot == bus::kNoAxis || &axis == &axes_[check.slot];
+      const bool mine = check.slot == kNoAxis || &axis == &axes_[check.slot];
       if (!mine || !check.bad.holds(model_.object(check.bad.object), static_cast<std::uint32_t>(s.number))) continue;
       axis->set_alarm(check.alarm, true);
     }
@@ -210,7 +210,7 @@ void Drive::judge_checks() {
 
 // Whether the drive notices a dead gateway: what makes it do so must be in it.
 void Drive::judge_loss_reaction() {
-  const bool armed = std::all_of(model_.setup.begin(), model_.setup.end(), [&](const ObjectWrite& setup) {
+  const bool armed = std::all_of(model_.setup.begin(), model_.setup.end(), [&](const model::ObjectWrite& setup) {
     const bool counts =
         std::find(model_.loss_objects.begin(), model_.loss_objects.end(), setup.object) != model_.loss_objects.end();
     return !counts || (store_[setup.object].known && store_[setup.object].number == setup.raw);
@@ -252,7 +252,7 @@ void Drive::leave_adoption() {
   // A drive that stands in quick stop active holds its motor: bring-up would find it enabled, and adopt it again.
   const bool enabled = std::any_of(axes_.begin(), axes_.end(), [this](const auto& a) {
     const AxisFacts facts = a->core().facts();
-    return facts.enabled() || (bring_up_.has_setup() && holds_motor(facts.state));
+    return facts.enabled() || (bring_up_.has_setup() && model::holds_motor(facts.state));
   });
   if (enabled) return;
   bring_up_.leave();

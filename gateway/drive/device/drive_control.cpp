@@ -10,7 +10,7 @@ namespace axisgate::drive {
 
 // --- Control frames ------------------------------------------------------------------------------------------------
 
-bool DriveControl::shown_lately(ObjectId object, Instant now) const {
+bool DriveControl::shown_lately(model::ObjectId object, Instant now) const {
   return store_[object].cached && now - store_[object].sent_at <= kShownFor;
 }
 
@@ -27,8 +27,8 @@ std::vector<MotorShows> DriveControl::motors_show(const Turn& turn) const {
                      .disabling = axis.disabling,
                      .moving = facts.moving,
                      .mode = facts.mode};
-    const Binding* position = axis.core.model.binding(Quantity::position_actual);
-    if (position != nullptr && position->object != kNoObject && store_[position->object].known)
+    const model::Binding* position = axis.core.model.binding(Quantity::position_actual);
+    if (position != nullptr && position->object != model::kNoObject && store_[position->object].known)
       shows.position = store_[position->object].number;
     out.push_back(shows);
   }
@@ -38,11 +38,11 @@ std::vector<MotorShows> DriveControl::motors_show(const Turn& turn) const {
 // A frame tells the other motor as well: where something has invalidated its state, or it is old, it is looked at
 // before. A stop is worth that look only where nothing but time has passed (this process was held up): without it the
 // frame would have to turn the other motor off.
-std::optional<ObjectId> DriveControl::look_before(const Turn& turn, bool stop) const {
+std::optional<model::ObjectId> DriveControl::look_before(const Turn& turn, bool stop) const {
   if (model_.composed.empty() || (stop && (turn.suspect || !turn.online))) return std::nullopt;
-  for (const AxisModel& axis : model_.axes) {
+  for (const model::AxisModel& axis : model_.axes) {
     if (!axis.virtual_axis) continue;
-    for (const ObjectId id : {axis.virtual_axis->enabled.object, axis.virtual_axis->fault.object})
+    for (const model::ObjectId id : {axis.virtual_axis->enabled.object, axis.virtual_axis->fault.object})
       if (!shown_lately(id, turn.now) && !store_[id].refused && (!stop || store_[id].cached)) return id;
   }
   return std::nullopt;
@@ -54,9 +54,9 @@ std::optional<bus::Exchange> DriveControl::whole(const Turn& turn, const bus::Ex
 }
 
 // A repetition changes nothing, whether it arrived or not.
-void DriveControl::on_written(const bus::ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at) {
-  const ObjectId id = model_.find(address);
-  if (id == kNoObject) return;
+void DriveControl::on_written(const ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at) {
+  const model::ObjectId id = model_.find(address);
+  if (id == model::kNoObject) return;
   const std::int64_t number = model_.object(id).number(raw);
   const ObjectState& told = store_[id];
   if (code == Errc::ok)
@@ -67,10 +67,11 @@ void DriveControl::on_written(const bus::ObjectAddress& address, std::uint32_t r
 
 // What all fields of a frame were told counts for each of them.
 void DriveControl::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result,
-                             std::optional<bus::AxisSlot> repeated, Instant sent_at, bool trusted, Instant now) {
+                             std::optional<AxisSlot> repeated, Instant sent_at, bool trusted, Instant now) {
   if (repeated && exchange.access == bus::Access::read && !looked_just_now(now)) keep_alive_.failed(*repeated, now);
-  const ObjectId written = exchange.access == bus::Access::write ? model_.find(exchange.object) : kNoObject;
-  if (written == kNoObject) return;
+  const model::ObjectId written =
+      exchange.access == bus::Access::write ? model_.find(exchange.object) : model::kNoObject;
+  if (written == model::kNoObject) return;
   if (repeated && result.code != Errc::ok) keep_alive_.failed(*repeated, now);
   if (result.code == Errc::refused_by_drive) return;
   const bool frame = frame_.carries(exchange);
@@ -95,7 +96,7 @@ std::optional<KeepAlive::Repeat> DriveControl::repeat_for(const AxisTurn& axis) 
 // follows goes by. A motor that trips between the two is turned on again by that frame; no protocol of this drive can
 // tell sooner.
 bool DriveControl::looked_just_now(Instant now) const {
-  return std::all_of(model_.axes.begin(), model_.axes.end(), [&](const AxisModel& axis) {
+  return std::all_of(model_.axes.begin(), model_.axes.end(), [&](const model::AxisModel& axis) {
     if (!axis.virtual_axis) return true;
     const ObjectState& state = store_[axis.virtual_axis->enabled.object];
     return shown_lately(axis.virtual_axis->enabled.object, now) && state.exchange == store_.exchange();
@@ -105,11 +106,11 @@ bool DriveControl::looked_just_now(Instant now) const {
 std::optional<DriveControl::Due> DriveControl::due(const Turn& turn) const {
   if (!may_repeat(turn)) return std::nullopt;
   for (std::size_t slot = 0; slot < turn.axes.size(); ++slot) {
-    const auto axis = static_cast<bus::AxisSlot>(slot);
+    const auto axis = static_cast<AxisSlot>(slot);
     if (keep_alive_.due(axis) > turn.now) continue;
     const auto repeat = repeat_for(turn.axes[slot]);
     if (!repeat) continue;
-    const ObjectDef& def = model_.object(repeat->object);
+    const model::ObjectDef& def = model_.object(repeat->object);
     const bus::Exchange write{model_.node, bus::Access::write, def.address, def.size,
                               wire_bits(repeat->number, def.size)};
     if (frame_.carries(write) && !looked_just_now(turn.now))
@@ -123,7 +124,7 @@ Instant DriveControl::next_due(const Turn& turn) const {
   Instant next = kNever;
   if (may_repeat(turn))
     for (std::size_t slot = 0; slot < turn.axes.size(); ++slot)
-      if (repeat_for(turn.axes[slot])) next = std::min(next, keep_alive_.due(static_cast<bus::AxisSlot>(slot)));
+      if (repeat_for(turn.axes[slot])) next = std::min(next, keep_alive_.due(static_cast<AxisSlot>(slot)));
   return next;
 }
 

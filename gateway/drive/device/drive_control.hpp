@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/device/control_frame.hpp"
 #include "gateway/drive/device/keep_alive.hpp"
 
@@ -36,7 +37,7 @@ class DriveControl {
     std::vector<AxisTurn> axes;  ///< one per axis of the model
   };
 
-  DriveControl(const DriveModel& model, ObjectStore& store)
+  DriveControl(const model::DriveModel& model, ObjectStore& store)
       : model_(model), store_(store), frame_(model), keep_alive_(model) {}
 
   /// The drive comes up from scratch: nothing that was sent counts.
@@ -46,34 +47,34 @@ class DriveControl {
 
   /// Whose repetition is due, and the exchange: the repetition, or the look at the motors that has to come before it.
   struct Due {
-    bus::AxisSlot axis = 0;
+    AxisSlot axis = 0;
     bus::Exchange exchange;
   };
   [[nodiscard]] std::optional<Due> due(const Turn& turn) const;
   /// When due() gives the next one.
   [[nodiscard]] Instant next_due(const Turn& turn) const;
   /// The repetition for this axis came to nothing.
-  void failed(bus::AxisSlot axis, Instant now) { keep_alive_.failed(axis, now); }
+  void failed(AxisSlot axis, Instant now) { keep_alive_.failed(axis, now); }
 
   /// What is to be read before a client's frame is sent. `stop`: it is a stop's.
-  [[nodiscard]] std::optional<ObjectId> look_before(const Turn& turn, bool stop) const;
+  [[nodiscard]] std::optional<model::ObjectId> look_before(const Turn& turn, bool stop) const;
   /// The exchange as it goes on the wire; none: the neighbour's state has no frame.
   [[nodiscard]] std::optional<bus::Exchange> whole(const Turn& turn, const bus::Exchange& exchange, bool stop) const;
 
   /// Of an exchange of this drive. `repeated`: it was given by due(), for this axis. `trusted`: its reply can be no
   /// late one.
-  void on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result,
-                 std::optional<bus::AxisSlot> repeated, Instant sent_at, bool trusted, Instant now);
+  void on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result, std::optional<AxisSlot> repeated,
+                 Instant sent_at, bool trusted, Instant now);
 
  private:
-  [[nodiscard]] bool shown_lately(ObjectId object, Instant now) const;
+  [[nodiscard]] bool shown_lately(model::ObjectId object, Instant now) const;
   [[nodiscard]] bool looked_just_now(Instant now) const;
   [[nodiscard]] std::vector<MotorShows> motors_show(const Turn& turn) const;
   [[nodiscard]] bool may_repeat(const Turn& turn) const;
   [[nodiscard]] std::optional<KeepAlive::Repeat> repeat_for(const AxisTurn& axis) const;
-  void on_written(const bus::ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at);
+  void on_written(const ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at);
 
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   ObjectStore& store_;
   ControlFrame frame_;
   KeepAlive keep_alive_;

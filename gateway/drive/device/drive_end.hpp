@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/device/disarming.hpp"
 
 namespace axisgate::drive {
@@ -31,7 +32,7 @@ class DriveEnd {
   /// Its stops are looked at again after so long.
   static constexpr Duration kStopsFirst = std::chrono::milliseconds(10);
 
-  explicit DriveEnd(const DriveModel& model) : disarming_(model) {}
+  explicit DriveEnd(const model::DriveModel& model) : disarming_(model) {}
 
   /// True: there is something to be asked of it.
   bool begin(Closing why, Known known, const ObjectStore& store, std::function<void()> closed);

@@ -12,7 +12,7 @@ namespace axisgate::drive {
 bus::JobId Drive::queue_own(bus::Priority priority) {
   bus::BusJob job;
   job.priority = priority;
-  job.axis = bus::kNoAxis;
+  job.axis = kNoAxis;
   const Queued queued = queue(std::move(job));
   return queued.code == Errc::ok ? queued.id : 0;
 }
@@ -25,7 +25,7 @@ bool Drive::has_cause_to_read() const {
 
 // One read for all axes that wait for it.
 std::optional<bus::Exchange> Drive::next_cause() {
-  std::optional<ObjectId> object;
+  std::optional<model::ObjectId> object;
   for (auto& axis : axes_) {
     const auto wanted = axis->cause_to_read();
     if (!wanted || (object && wanted != object)) continue;
@@ -50,7 +50,7 @@ bool Drive::causes_are_open() const {
 void Drive::schedule_causes() {
   for (auto& axis : axes_)
     if (axis->fault_is_over())
-      for (const ObjectId word : axis->core().causes)
+      for (const model::ObjectId word : axis->core().causes)
         if (!reads_.tells_state(word)) reads_.hurry(word, turn_.now);
   if (!brought_up() || !has_cause_to_read() || jobs_.cause != 0) return;
   jobs_.cause = queue_own(bus::Priority::cause);

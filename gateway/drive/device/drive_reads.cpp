@@ -10,7 +10,7 @@
 
 namespace axisgate::drive {
 
-DriveReads::DriveReads(DriveModel& model, ObjectStore& store)
+DriveReads::DriveReads(model::DriveModel& model, ObjectStore& store)
     : model_(model),
       store_(store),
       plan_(model),
@@ -19,7 +19,7 @@ DriveReads::DriveReads(DriveModel& model, ObjectStore& store)
       tries_(model.objects.size()),
       constants_(model.constants.size()),
       mapped_(model.objects.size(), false) {
-  for (const ObjectDef& object : model.objects) width_.push_back(object.size);
+  for (const model::ObjectDef& object : model.objects) width_.push_back(object.size);
   map_unsolicited();
 }
 
@@ -36,28 +36,28 @@ void DriveReads::restart(Instant now) {
   plan_.restart(now);
 }
 
-std::optional<bus::Exchange> DriveReads::poll(Instant now) const {
+std::optional<bus::Exchange> drive::DriveReads::poll(Instant now) const {
   const auto object = plan_.next(now);
   if (!object) return std::nullopt;
   return read_of(model_, *object);
 }
 
-bool DriveReads::tells_state(ObjectId object) const {
+bool DriveReads::tells_state(model::ObjectId object) const {
   return std::any_of(model_.axes.begin(), model_.axes.end(),
-                     [object](const AxisModel& axis) { return drive::tells_state(axis, object); });
+                     [object](const model::AxisModel& axis) { return drive::tells_state(axis, object); });
 }
 
-void DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
+void drive::DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
   if (asked.resync || asked.probe || asked.counted) return;
-  blocks_.widen(exchange, [&](ObjectId id) {
+  blocks_.widen(exchange, [&](model::ObjectId id) {
     if (store_[id].refused) return false;
     return whom == For::bring_up || tells_state(id) || (whom == For::poll && plan_.due(id, now));
   });
   asked.widened = exchange.access == bus::Access::read && !exchange.more.empty() && !blocks_.one_answer(exchange);
 }
 
-void DriveReads::hurry_state(const AxisModel& axis, Instant now) {
-  for (const ObjectId id : axis.state_sources) plan_.hurry(id, now);
+void DriveReads::hurry_state(const model::AxisModel& axis, Instant now) {
+  for (const model::ObjectId id : axis.state_sources) plan_.hurry(id, now);
 }
 
 void DriveReads::refresh(Instant now) {
@@ -68,7 +68,7 @@ void DriveReads::refresh(Instant now) {
 
 // --- Late replies ----------------------------------------------------------------------------------------------------
 
-std::optional<bus::Exchange> DriveReads::resync(Asked& asked, Instant now) {
+std::optional<bus::Exchange> drive::DriveReads::resync(Asked& asked, Instant now) {
   const auto candidate = resync_.candidate();
   if (candidate && !resync_.exhausted()) {
     resync_.resync_sent(*candidate);
@@ -82,7 +82,7 @@ std::optional<bus::Exchange> DriveReads::resync(Asked& asked, Instant now) {
   return probe_read(model_);
 }
 
-bus::Exchange DriveReads::after_silence(Asked& asked, bool Asked::*trusted) {
+bus::Exchange drive::DriveReads::after_silence(Asked& asked, bool Asked::*trusted) {
   const auto candidate = resync_.candidate();
   (candidate ? asked.*trusted : asked.counted) = true;
   return read_of(model_, candidate ? *candidate : resync_.counted());
@@ -95,7 +95,7 @@ bool DriveReads::may_probe(Instant now) {
   return true;
 }
 
-bus::Exchange DriveReads::probe(Asked& asked) {
+bus::Exchange drive::DriveReads::probe(Asked& asked) {
   if (resync_.suspect()) return after_silence(asked, &Asked::probe);
   asked.probe = true;
   // A drive whose state is unresponsive is there all the same.
@@ -104,7 +104,7 @@ bus::Exchange DriveReads::probe(Asked& asked) {
 
 // --- What comes back -------------------------------------------------------------------------------------------------
 
-void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
+void drive::DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
   resync_.lost(exchange, now);
   const bool plain = exchange.access == bus::Access::read && !asked.resync && !asked.probe && !asked.counted;
   if (plain && !silent_) silent_ = {exchange, asked};
@@ -112,8 +112,8 @@ void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, In
 }
 
 // An error answer is no answered resynchronisation read; the next candidate is tried.
-bool DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
-                          Instant now) {
+bool drive::DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                                 Instant now) {
   const bool proves = result.code == Errc::ok && (asked.resync || asked.probe);
   if (proves) {
     resync_.answered();
@@ -126,7 +126,7 @@ bool DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResu
   return proves;
 }
 
-bool DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked) {
+bool drive::DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked) {
   if (!asked.widened || resync_.suspect()) return false;
   if (result.code != Errc::refused_by_drive) {
     blocks_.answered(exchange);
@@ -135,7 +135,7 @@ bool DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult&
   return result.for_now || !answers_ ? blocks_.silent(exchange) : blocks_.refused(exchange);
 }
 
-bool DriveReads::needed(ObjectId object) const {
+bool DriveReads::needed(model::ObjectId object) const {
   return model_.needs_for_state(object) || object == model_.find(plain_read(model_).object);
 }
 
@@ -147,21 +147,21 @@ void DriveReads::was_silent(Instant now) {
     static_cast<void>(blocks_.silent(exchange));
     return;
   }
-  const auto count = [&](const bus::ObjectAddress& address) {
-    const ObjectId id = model_.find(address);
+  const auto count = [&](const ObjectAddress& address) {
+    const model::ObjectId id = model_.find(address);
     // It has come by itself meanwhile, by a TPDO: nobody needs the read.
-    if (id != kNoObject && store_[id].sent_at <= silent_->asked.sent_at) in_vain(id, std::nullopt, now);
+    if (id != model::kNoObject && store_[id].sent_at <= silent_->asked.sent_at) in_vain(id, std::nullopt, now);
   };
   count(exchange.object);
   for (const bus::Neighbour& neighbour : exchange.more) count(neighbour.object);
 }
 
-bool DriveReads::expects_silence(const bus::Exchange& exchange) const {
-  const ObjectId id = exchange.access == bus::Access::read ? model_.find(exchange.object) : kNoObject;
-  return id != kNoObject && tries_.given_up(id);
+bool drive::DriveReads::expects_silence(const bus::Exchange& exchange) const {
+  const model::ObjectId id = exchange.access == bus::Access::read ? model_.find(exchange.object) : model::kNoObject;
+  return id != model::kNoObject && tries_.given_up(id);
 }
 
-void DriveReads::in_vain(ObjectId object, const ObjectTries::Refusal& refusal, Instant now) {
+void DriveReads::in_vain(model::ObjectId object, const ObjectTries::Refusal& refusal, Instant now) {
   const bool given_up = tries_.in_vain(object, refusal, needed(object), now);
   if (given_up && !needed(object)) store_.unresponsive(object);
   if (tries_.again(object) > now) plan_.rest(object, tries_.again(object));
@@ -169,14 +169,14 @@ void DriveReads::in_vain(ObjectId object, const ObjectTries::Refusal& refusal, I
 
 // What the drive does not have is not asked again until the next bring-up; it must have answered something before it is
 // believed, since a drive that still starts may refuse all. Any other refusal may pass.
-void DriveReads::take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
-                              Instant now) {
-  const ObjectId id = model_.find(exchange.object);
-  if (id == kNoObject) return;
+void drive::DriveReads::take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result,
+                                     const Asked& asked, Instant now) {
+  const model::ObjectId id = model_.find(exchange.object);
+  if (id == model::kNoObject) return;
   if (asked.widened) return;  // which of them it was is not known yet
   const bool for_ever = !result.for_now && answers_;
-  const auto refuse = [&](ObjectId object) {
-    if (object == kNoObject) return;
+  const auto refuse = [&](model::ObjectId object) {
+    if (object == model::kNoObject) return;
     if (!for_ever || needed(object)) return in_vain(object, result.detail, now);
     store_.refused(object);
     plan_.drop(object);
@@ -189,21 +189,21 @@ void DriveReads::take_refusal(const bus::Exchange& exchange, const bus::Exchange
 namespace {
 
 /// The width that this object was asked for in; 0: in whatever it has.
-std::uint8_t asked_width(const bus::Exchange& exchange, const bus::ObjectAddress& object) {
+std::uint8_t asked_width(const bus::Exchange& exchange, const ObjectAddress& object) {
   for (const bus::Neighbour& neighbour : exchange.more)
     if (neighbour.object == object) return neighbour.size;
   return exchange.size;
 }
 
-std::string width_text(const ObjectDef& object, const bus::ReplyField& field) {
+std::string width_text(const model::ObjectDef& object, const bus::ReplyField& field) {
   return object.name + ": the drive answers " + std::to_string(field.size) + " bytes, the profile says " +
          std::to_string(object.size);
 }
 
 }  // namespace
 
-DriveReads::Taken DriveReads::take(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
-                                   Instant now) {
+drive::DriveReads::Taken drive::DriveReads::take(const bus::Exchange& exchange, const bus::ExchangeResult& result,
+                                                 const Asked& asked, Instant now) {
   Taken taken;
   if (exchange.access != bus::Access::read) return taken;
   if (result.code == Errc::refused_by_drive) {
@@ -218,11 +218,11 @@ DriveReads::Taken DriveReads::take(const bus::Exchange& exchange, const bus::Exc
   return taken;
 }
 
-void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked,
-                            Taken& taken, Instant now) {
-  const ObjectId id = model_.find(field.object);
-  if (id == kNoObject) return;
-  const ObjectDef& object = model_.object(id);
+void drive::DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked,
+                                   Taken& taken, Instant now) {
+  const model::ObjectId id = model_.find(field.object);
+  if (id == model::kNoObject) return;
+  const model::ObjectDef& object = model_.object(id);
   const std::uint8_t asked_for = asked_width(exchange, field.object);
   const bool proves = !asked.resync && (asked_for == object.size || (object.any_width && asked_for == 0));
   const auto wide = proves ? narrowed(model_, id, field) : std::nullopt;
@@ -233,7 +233,7 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
     store_.read(id, object.number(field.raw), asked.sent_at);
   } else if (object.any_width && field.size < object.size) {
     width_[id] = field.size;
-    ObjectDef narrow;
+    model::ObjectDef narrow;
     narrow.size = field.size;
     narrow.is_signed = object.is_signed;
     store_.read(id, narrow.number(field.raw), asked.sent_at);
@@ -253,13 +253,13 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
   }
   taken.back = tries_.answered(id) || taken.back;
   plan_.done(id, now);
-  for (const ObjectId alias : object.aliases) plan_.done(alias, now);
+  for (const model::ObjectId alias : object.aliases) plan_.done(alias, now);
 }
 
 bool DriveReads::read_constants() {
   bool changed = false;
   for (std::size_t i = 0; i < constants_.size(); ++i) {
-    const auto value = value_of(model_.constants[i], [&](ObjectId id) {
+    const auto value = model::value_of(model_.constants[i], [&](model::ObjectId id) {
       return store_[id].known ? std::optional(store_[id].number) : std::nullopt;
     });
     if (!value || constants_[i] == value) continue;
@@ -267,15 +267,15 @@ bool DriveReads::read_constants() {
     changed = true;
   }
   if (!changed) return false;
-  for (AxisModel& axis : model_.axes)
-    for (Binding& binding : axis.bindings)
-      if (binding.recipe.waits()) apply_recipe(binding, constants_, model_.object(binding.object));
+  for (model::AxisModel& axis : model_.axes)
+    for (model::Binding& binding : axis.bindings)
+      if (binding.recipe.waits()) model::apply_recipe(binding, constants_, model_.object(binding.object));
   return true;
 }
 
 // --- What comes unasked ----------------------------------------------------------------------------------------------
 
-void DriveReads::map(ObjectId object, std::optional<Duration> event) {
+void DriveReads::map(model::ObjectId object, std::optional<Duration> event) {
   mapped_[object] = true;
   plan_.map(object, event, model_.canopen.confirm);
   store_.set_period(object, event.value_or(model_.canopen.confirm));
@@ -283,7 +283,7 @@ void DriveReads::map(ObjectId object, std::optional<Duration> event) {
 
 // What a drive sends by itself, whatever we tell it: mapped for good.
 void DriveReads::map_unsolicited() {
-  for (const ObjectId id : model_.unsolicited.objects) {
+  for (const model::ObjectId id : model_.unsolicited.objects) {
     mapped_[id] = true;
     if (model_.unsolicited.every > Duration{} && !tells_state(id)) store_.set_period(id, model_.unsolicited.every);
   }
@@ -293,28 +293,28 @@ void DriveReads::unmap(Instant now) {
   for (std::size_t i = 0; i < mapped_.size(); ++i) {
     if (!mapped_[i]) continue;
     mapped_[i] = false;
-    store_.set_period(static_cast<ObjectId>(i), Duration{});
+    store_.set_period(static_cast<model::ObjectId>(i), Duration{});
   }
   plan_.unmap_all(now);
 }
 
 void DriveReads::outdate_mapped() {
   for (std::size_t i = 0; i < mapped_.size(); ++i)
-    if (mapped_[i]) store_.outdate(static_cast<ObjectId>(i));
+    if (mapped_[i]) store_.outdate(static_cast<model::ObjectId>(i));
 }
 
-void DriveReads::take_unsolicited(const bus::ReplyFields& fields, Instant now) {
+void drive::DriveReads::take_unsolicited(const bus::ReplyFields& fields, Instant now) {
   for (const bus::ReplyField& field : fields) {
-    const ObjectId id = model_.find(field.object);
-    if (id == kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;
+    const model::ObjectId id = model_.find(field.object);
+    if (id == model::kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;
     store_.received(id, model_.object(id).number(field.raw), now);
     plan_.received(id, now);
   }
 }
 
-void DriveReads::watch_position(const AxisModel& axis, bool moves, Instant now) {
-  const Binding* position = axis.binding(Quantity::position_actual);
-  if (position == nullptr || position->object == kNoObject || !mapped_[position->object]) return;
+void DriveReads::watch_position(const model::AxisModel& axis, bool moves, Instant now) {
+  const model::Binding* position = axis.binding(Quantity::position_actual);
+  if (position == nullptr || position->object == model::kNoObject || !mapped_[position->object]) return;
   plan_.confirm_within(position->object, moves ? std::optional(kMovingConfirm) : std::nullopt, now);
 }
 

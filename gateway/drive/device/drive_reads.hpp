@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/device/object_tries.hpp"
 #include "gateway/drive/device/read_blocks.hpp"
 #include "gateway/drive/device/resync.hpp"
@@ -31,7 +32,7 @@ class DriveReads {
   enum class For : std::uint8_t { poll, bring_up, other };
 
   /// `model`: constants that are read from the drive change its scales and limits.
-  DriveReads(DriveModel& model, ObjectStore& store);
+  DriveReads(model::DriveModel& model, ObjectStore& store);
 
   // --- What is read next ---------------------------------------------------------------------------------------------
 
@@ -43,23 +44,23 @@ class DriveReads {
   /// due as well, and of the state never a part without the rest.
   void widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const;
   /// It is read as soon as its turn comes.
-  void hurry(ObjectId object, Instant now) { plan_.hurry(object, now); }
-  void hurry_state(const AxisModel& axis, Instant now);
+  void hurry(model::ObjectId object, Instant now) { plan_.hurry(object, now); }
+  void hurry_state(const model::AxisModel& axis, Instant now);
   /// It is read next, before all that is overdue.
-  void first(ObjectId object) { plan_.first(object); }
+  void first(model::ObjectId object) { plan_.first(object); }
   /// A write of it was acknowledged.
-  void written(ObjectId object, Instant now) { plan_.written(object, now); }
+  void written(model::ObjectId object, Instant now) { plan_.written(object, now); }
   /// What was invalidated since the last call is read again.
   void refresh(Instant now);
   /// Bytes of an object, as the drive answered last.
-  [[nodiscard]] std::uint8_t width(ObjectId object) const { return width_[object]; }
+  [[nodiscard]] std::uint8_t width(model::ObjectId object) const { return width_[object]; }
   /// Some axis's statusword is made from it, or is it.
-  [[nodiscard]] bool tells_state(ObjectId object) const;
+  [[nodiscard]] bool tells_state(model::ObjectId object) const;
   /// Objects that were given up since the last call.
   [[nodiscard]] std::vector<ObjectTries::GivenUp> take_given_up() { return tries_.take_given_up(); }
   [[nodiscard]] const ObjectTries& tries() const { return tries_; }
   /// The bring-up that was begun is for its sake.
-  void keep_given_up(ObjectId object, Instant now) { tries_.keep_given_up(object, now); }
+  void keep_given_up(model::ObjectId object, Instant now) { tries_.keep_given_up(object, now); }
   /// So it was known that nobody answers this read: that says nothing of the drive.
   [[nodiscard]] bool expects_silence(const bus::Exchange& exchange) const;
 
@@ -104,14 +105,14 @@ class DriveReads {
   // --- Unsolicited values --------------------------------------------------------------------------------------------
 
   /// It comes by TPDO from now on; `event`: its timer.
-  void map(ObjectId object, std::optional<Duration> event);
+  void map(model::ObjectId object, std::optional<Duration> event);
   /// Nothing does any more.
   void unmap(Instant now);
   /// What came by TPDO so far is no sample of the drive as it is now.
   void outdate_mapped();
   void take_unsolicited(const bus::ReplyFields& fields, Instant now);
   /// The position of this axis must not hang on a TPDO that has failed to come while it moves.
-  void watch_position(const AxisModel& axis, bool moves, Instant now);
+  void watch_position(const model::AxisModel& axis, bool moves, Instant now);
 
  private:
   /// A position that comes by TPDO is read after so long without one while its axis moves.
@@ -124,13 +125,13 @@ class DriveReads {
                   Instant now);
   void take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked, Instant now);
   /// Without it there is no axis: it is asked for ever.
-  [[nodiscard]] bool needed(ObjectId object) const;
-  void in_vain(ObjectId object, const ObjectTries::Refusal& refusal, Instant now);
+  [[nodiscard]] bool needed(model::ObjectId object) const;
+  void in_vain(model::ObjectId object, const ObjectTries::Refusal& refusal, Instant now);
   /// The drive lives, and did not answer this read.
   void was_silent(Instant now);
   [[nodiscard]] bool read_constants();
 
-  DriveModel& model_;
+  model::DriveModel& model_;
   ObjectStore& store_;
   PollPlan plan_;
   Resync resync_;

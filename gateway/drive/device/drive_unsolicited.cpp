@@ -122,10 +122,10 @@ void Drive::on_emergency(const bus::UnsolicitedEvent& unsolicited) {
   if (unsolicited.repeats > 0) text += fmt::format(" ({} more were left out)", unsolicited.repeats);
   // Whether it is a fault the statusword tells, and then its cause is told once.
   tell_all(EventKind::warning, unsolicited.code, text);
-  for (const AxisModel& axis : model_.axes) {
+  for (const model::AxisModel& axis : model_.axes) {
     reads_.hurry_state(axis, turn_.now);
-    for (const ObjectId id : axis.fault_words)
-      if (id != kNoObject) reads_.hurry(id, turn_.now);
+    for (const model::ObjectId id : axis.fault_words)
+      if (id != model::kNoObject) reads_.hurry(id, turn_.now);
   }
 }
 
@@ -134,7 +134,7 @@ void Drive::map_values() {
     bus::ProcessMap map;
     const auto event =
         tpdo.event_ms ? std::optional<Duration>(std::chrono::milliseconds(*tpdo.event_ms)) : std::nullopt;
-    for (const ObjectId id : tpdo.objects) {
+    for (const model::ObjectId id : tpdo.objects) {
       map.push_back({model_.object(id).address, model_.object(id).size});
       reads_.map(id, event);
     }
@@ -143,8 +143,8 @@ void Drive::map_values() {
 }
 
 void Drive::unmap_values() {
-  if (!is_canopen(model_)) return;
-  for (const TpdoProperties& tpdo : model_.canopen.tpdos) bus_.map_process_data(model_.node, tpdo.number, {});
+  if (!model::is_canopen(model_)) return;
+  for (const model::TpdoProperties& tpdo : model_.canopen.tpdos) bus_.map_process_data(model_.node, tpdo.number, {});
   reads_.unmap(turn_.now);
 }
 

@@ -5,7 +5,7 @@
 
 namespace axisgate::drive {
 
-KeepAlive::KeepAlive(const DriveModel& model)
+KeepAlive::KeepAlive(const model::DriveModel& model)
     : model_(model), written_(model.axes.size(), kLongAgo), not_before_(model.axes.size(), kLongAgo) {}
 
 void KeepAlive::reset() {
@@ -13,8 +13,8 @@ void KeepAlive::reset() {
   std::fill(not_before_.begin(), not_before_.end(), kLongAgo);
 }
 
-void KeepAlive::written(ObjectId object, Instant sent_at) {
-  const ObjectDef& def = model_.object(object);
+void KeepAlive::written(model::ObjectId object, Instant sent_at) {
+  const model::ObjectDef& def = model_.object(object);
   if (def.emulated || (!def.trigger && !def.composed)) return;
   for (std::size_t slot = 0; slot < written_.size(); ++slot) {
     // A composed frame commands both motors.
@@ -24,7 +24,7 @@ void KeepAlive::written(ObjectId object, Instant sent_at) {
   }
 }
 
-void KeepAlive::failed(bus::AxisSlot slot, Instant now) {
+void KeepAlive::failed(AxisSlot slot, Instant now) {
   constexpr int kTriesPerPeriod = 8;
   not_before_[slot] = now + model_.keep_alive / kTriesPerPeriod;
 }
@@ -50,7 +50,7 @@ std::optional<KeepAlive::Repeat> KeepAlive::repeat(const AxisCore& core, bool st
   return std::nullopt;
 }
 
-Instant KeepAlive::due(bus::AxisSlot slot) const {
+Instant KeepAlive::due(AxisSlot slot) const {
   const Instant next = written_[slot] == kLongAgo ? kLongAgo : written_[slot] + model_.keep_alive / 2;
   return std::max(next, not_before_[slot]);
 }

@@ -15,28 +15,28 @@ namespace axisgate::drive {
 
 class KeepAlive {
  public:
-  explicit KeepAlive(const DriveModel& model);
+  explicit KeepAlive(const model::DriveModel& model);
 
   [[nodiscard]] bool wanted() const { return model_.keep_alive > Duration{}; }
   /// The drive comes up from scratch: nothing that was sent counts.
   void reset();
   /// The drive has taken a control write of this object, sent then.
-  void written(ObjectId object, Instant sent_at);
+  void written(model::ObjectId object, Instant sent_at);
   /// A repetition came to nothing: it is not tried again at once.
-  void failed(bus::AxisSlot slot, Instant now);
+  void failed(AxisSlot slot, Instant now);
 
   struct Repeat {
-    ObjectId object = kNoObject;
+    model::ObjectId object = model::kNoObject;
     std::int64_t number = 0;
   };
   /// What is to be sent again for this axis as it is now. `stopping`: a stop of it is pending, under way or owed:
   /// nothing but a speed or torque of 0. `live`: its owner's lease runs, or leases are off.
   [[nodiscard]] std::optional<Repeat> repeat(const AxisCore& core, bool stopping, bool live) const;
   /// When a repetition for this axis is due.
-  [[nodiscard]] Instant due(bus::AxisSlot slot) const;
+  [[nodiscard]] Instant due(AxisSlot slot) const;
 
  private:
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   std::vector<Instant> written_;  ///< per axis: its newest control write
   std::vector<Instant> not_before_;
 };

@@ -88,8 +88,8 @@ bus::Exchange NodeSetup::mapping(bus::Access access, std::uint8_t sub, std::uint
   return {model_.node, access, {static_cast<std::uint16_t>(kFirstMapping + number() - 1), sub}, size, raw};
 }
 
-std::uint32_t NodeSetup::mapping_entry(ObjectId object) const {
-  const ObjectDef& def = model_.object(object);
+std::uint32_t NodeSetup::mapping_entry(model::ObjectId object) const {
+  const model::ObjectDef& def = model_.object(object);
   return std::uint32_t{def.address.index} << 16 | std::uint32_t{def.address.sub} << 8 | def.size * 8U;
 }
 

@@ -21,7 +21,7 @@ using bus::NmtCommand;
 /// The 1018h numbers that are configured, read and compared.
 class IdentityCheck {
  public:
-  explicit IdentityCheck(const DriveModel& model) : model_(model) {}
+  explicit IdentityCheck(const model::DriveModel& model) : model_(model) {}
   void begin();
   /// The next read; none: all are known.
   [[nodiscard]] std::optional<bus::Exchange> next() const;
@@ -32,7 +32,7 @@ class IdentityCheck {
 
  private:
   void skip();
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   std::size_t at_ = 0;
   std::string mismatch_;
 };
@@ -40,14 +40,14 @@ class IdentityCheck {
 /// A TPDO as the drive has taken it.
 struct MappedTpdo {
   std::uint8_t number = 1;
-  std::vector<ObjectId> objects;
+  std::vector<model::ObjectId> objects;
   std::optional<std::uint16_t> event_ms{};  ///< none: the drive did not take the event timer
   friend bool operator==(const MappedTpdo&, const MappedTpdo&) = default;
 };
 
 class NodeSetup {
  public:
-  explicit NodeSetup(const DriveModel& model) : model_(model) {}
+  explicit NodeSetup(const model::DriveModel& model) : model_(model) {}
   void begin();
   /// The next exchange; none: it is over. The same answer until on_result().
   [[nodiscard]] std::optional<bus::Exchange> next() const;
@@ -84,9 +84,9 @@ class NodeSetup {
                                         std::uint32_t raw = 0) const;
   [[nodiscard]] bus::Exchange mapping(bus::Access access, std::uint8_t sub, std::uint8_t size,
                                       std::uint32_t raw = 0) const;
-  [[nodiscard]] const TpdoProperties& tpdo() const { return model_.canopen.tpdos[at_]; }
+  [[nodiscard]] const model::TpdoProperties& tpdo() const { return model_.canopen.tpdos[at_]; }
   [[nodiscard]] std::uint8_t number() const;
-  [[nodiscard]] std::uint32_t mapping_entry(ObjectId object) const;
+  [[nodiscard]] std::uint32_t mapping_entry(model::ObjectId object) const;
   void begin_tpdo(std::size_t at);
   void begin_unused(std::size_t at);
   void give_up(const std::string& why);
@@ -97,7 +97,7 @@ class NodeSetup {
   void check_enabled(const bus::ExchangeResult& result);
   void note(std::string text) { notes_.push_back("TPDO " + std::to_string(number()) + " " + std::move(text)); }
 
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   Step step_ = Step::over;
   std::size_t at_ = 0;        ///< TPDO, or unused TPDO
   std::size_t entry_at_ = 0;  ///< of its map

@@ -14,11 +14,11 @@ void ObjectTries::restart() {
   given_up_.clear();
 }
 
-void ObjectTries::keep_given_up(ObjectId object, Instant now) {
+void ObjectTries::keep_given_up(model::ObjectId object, Instant now) {
   entries_[object] = {.tries = kTries, .pause = kFirstPause, .again = now + kFirstPause, .reported = true};
 }
 
-bool ObjectTries::in_vain(ObjectId object, const Refusal& refusal, bool needed, Instant now) {
+bool ObjectTries::in_vain(model::ObjectId object, const Refusal& refusal, bool needed, Instant now) {
   Entry& e = entries_[object];
   e.refusal = refusal;
   const bool was_given_up = e.tries == kTries;
@@ -33,7 +33,7 @@ bool ObjectTries::in_vain(ObjectId object, const Refusal& refusal, bool needed, 
   return true;
 }
 
-bool ObjectTries::answered(ObjectId object) {
+bool ObjectTries::answered(model::ObjectId object) {
   const bool was_given_up = given_up(object);
   entries_[object] = {};
   std::erase_if(given_up_, [object](const GivenUp& g) { return g.object == object; });
@@ -47,34 +47,34 @@ bool ObjectTries::answered(ObjectId object) {
 
 std::vector<ObjectTries::GivenUp> ObjectTries::take_given_up() { return std::exchange(given_up_, {}); }
 
-std::string place_of(const DriveModel& model, ObjectId object) {
-  const bus::ObjectAddress& at = model.object(object).address;
+std::string place_of(const model::DriveModel& model, model::ObjectId object) {
+  const ObjectAddress& at = model.object(object).address;
   return model.protocol == "modbus-rtu" ? fmt::format("register {}", at.index)
                                         : fmt::format("0x{:04X}:{:02X}", at.index, at.sub);
 }
 
-std::string uses_of(const DriveModel& model, ObjectId object) {
+std::string uses_of(const model::DriveModel& model, model::ObjectId object) {
   std::vector<std::string> uses;
   const auto add = [&uses](std::string use) {
     if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(std::move(use));
   };
-  for (const AxisModel& axis : model.axes) {
+  for (const model::AxisModel& axis : model.axes) {
     if (axis.needs_for_state(object)) add(fmt::format("the state of axis {}", axis.number));
-    for (const Binding& binding : axis.bindings) {
+    for (const model::Binding& binding : axis.bindings) {
       const bool of_bits = std::any_of(binding.bits.begin(), binding.bits.end(),
-                                       [object](const BitField& field) { return field.object == object; });
+                                       [object](const model::BitField& field) { return field.object == object; });
       if (binding.object == object || of_bits) add(std::string(row(binding.quantity).name));
     }
     if (std::find(axis.fault_words.begin(), axis.fault_words.end(), object) != axis.fault_words.end())
       add("the causes of faults");
   }
-  for (const Check& check : model.checks)
+  for (const model::Check& check : model.checks)
     if (check.bad.object == object) add("the check " + check.name);
   if (std::find(model.loss_objects.begin(), model.loss_objects.end(), object) != model.loss_objects.end())
     add("what stops the drive when the gateway dies");
-  for (const ObjectWrite& setup : model.setup)
+  for (const model::ObjectWrite& setup : model.setup)
     if (setup.object == object) add("the set-up");
-  const std::vector<ObjectId> constants = constant_objects(model);
+  const std::vector<model::ObjectId> constants = model::constant_objects(model);
   if (std::find(constants.begin(), constants.end(), object) != constants.end()) add("the axis's scales");
   if (uses.empty()) add("its commands");
   return fmt::format("{}", fmt::join(uses, ", "));

@@ -30,17 +30,17 @@ class ObjectTries {
   /// The drive comes up from scratch: each object has its tries again. What was reported of it is not reported again.
   void restart();
   /// It stays given up, through a restart() that is none of the drive's.
-  void keep_given_up(ObjectId object, Instant now);
+  void keep_given_up(model::ObjectId object, Instant now);
   /// `needed`: without it there is no axis. True: it is given up with this try, or was before.
-  [[nodiscard]] bool in_vain(ObjectId object, const Refusal& refusal, bool needed, Instant now);
+  [[nodiscard]] bool in_vain(model::ObjectId object, const Refusal& refusal, bool needed, Instant now);
   /// It was read. True: it had been given up, and all others that are may be asked now.
-  [[nodiscard]] bool answered(ObjectId object);
-  [[nodiscard]] bool given_up(ObjectId object) const { return entries_[object].tries >= kTries; }
+  [[nodiscard]] bool answered(model::ObjectId object);
+  [[nodiscard]] bool given_up(model::ObjectId object) const { return entries_[object].tries >= kTries; }
   /// Not to be asked before; kLongAgo: whenever it is due.
-  [[nodiscard]] Instant again(ObjectId object) const { return entries_[object].again; }
-  [[nodiscard]] const Refusal& refusal(ObjectId object) const { return entries_[object].refusal; }
+  [[nodiscard]] Instant again(model::ObjectId object) const { return entries_[object].again; }
+  [[nodiscard]] const Refusal& refusal(model::ObjectId object) const { return entries_[object].refusal; }
   struct GivenUp {
-    ObjectId object = kNoObject;
+    model::ObjectId object = model::kNoObject;
     bool first_report = false;  ///< for the first time since it answered last
   };
   /// Since the last call, each once.
@@ -59,9 +59,9 @@ class ObjectTries {
 };
 
 /// Where it is in the drive: "0x6079:00", "register 26752".
-[[nodiscard]] std::string place_of(const DriveModel& model, ObjectId object);
+[[nodiscard]] std::string place_of(const model::DriveModel& model, model::ObjectId object);
 
 /// What the profile has this object for, in words: "dc_voltage", "the state of axis 1".
-[[nodiscard]] std::string uses_of(const DriveModel& model, ObjectId object);
+[[nodiscard]] std::string uses_of(const model::DriveModel& model, model::ObjectId object);
 
 }  // namespace axisgate::drive

@@ -7,8 +7,8 @@
 namespace axisgate::drive {
 namespace {
 
-void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
-  if (object == kNoObject) return;
+void add(std::vector<PollItem>& items, model::ObjectId object, model::PollClass poll_class) {
+  if (object == model::kNoObject) return;
   const auto found = std::find_if(items.begin(), items.end(), [&](const PollItem& i) { return i.object == object; });
   if (found == items.end())
     items.push_back({object, poll_class, false});
@@ -17,58 +17,59 @@ void add(std::vector<PollItem>& items, ObjectId object, PollClass poll_class) {
 }
 
 /// It comes by itself, in a known beat, and is asked for never; but the state is.
-bool comes_unsolicited(const DriveModel& model, ObjectId id) {
+bool comes_unsolicited(const model::DriveModel& model, model::ObjectId id) {
   if (model.unsolicited.every == Duration{}) return false;
-  const auto has = [id](const std::vector<ObjectId>& list) {
+  const auto has = [id](const std::vector<model::ObjectId>& list) {
     return std::find(list.begin(), list.end(), id) != list.end();
   };
-  const bool state =
-      std::any_of(model.axes.begin(), model.axes.end(), [&](const AxisModel& axis) { return has(axis.state_sources); });
+  const bool state = std::any_of(model.axes.begin(), model.axes.end(),
+                                 [&](const model::AxisModel& axis) { return has(axis.state_sources); });
   return !state && has(model.unsolicited.objects);
 }
 
 }  // namespace
 
-std::vector<PollItem> poll_items(const DriveModel& model) {
+std::vector<PollItem> poll_items(const model::DriveModel& model) {
   std::vector<PollItem> items;
-  for (const AxisModel& axis : model.axes) {
-    const auto read = [&](ObjectId id, PollClass poll_class) {
-      if (id != kNoObject && !model.object(id).emulated) add(items, id, poll_class);
+  for (const model::AxisModel& axis : model.axes) {
+    const auto read = [&](model::ObjectId id, model::PollClass poll_class) {
+      if (id != model::kNoObject && !model.object(id).emulated) add(items, id, poll_class);
     };
     // A PLC sees everything else through the statusword: it, or what it is made from, is never slower than fast.
-    for (const ObjectId source : axis.state_sources) read(source, PollClass::fast);
-    read(axis.mode_display, PollClass::normal);
-    for (const ObjectId word : axis.fault_words) add(items, word, PollClass::normal);
+    for (const model::ObjectId source : axis.state_sources) read(source, model::PollClass::fast);
+    read(axis.mode_display, model::PollClass::normal);
+    for (const model::ObjectId word : axis.fault_words) add(items, word, model::PollClass::normal);
     for (const auto* condition : {&axis.homed, &axis.homing_failed, &axis.moving})
-      if (condition->has_value()) add(items, (*condition)->object, PollClass::normal);
-    for (const Binding& binding : axis.bindings) {
-      if (binding.object != kNoObject && model.object(binding.object).readable) read(binding.object, binding.poll);
-      for (const BitField& field : binding.bits) add(items, field.object, binding.poll);
+      if (condition->has_value()) add(items, (*condition)->object, model::PollClass::normal);
+    for (const model::Binding& binding : axis.bindings) {
+      if (binding.object != model::kNoObject && model.object(binding.object).readable)
+        read(binding.object, binding.poll);
+      for (const model::BitField& field : binding.bits) add(items, field.object, binding.poll);
     }
   }
   // Their zero is judged at each enable: read once, it need not be written.
-  for (const AxisModel& axis : model.axes)
-    for (const ObjectId id : axis.zero_before_enable)
-      if (model.object(id).readable) add(items, id, PollClass::once);
-  for (const AxisModel& axis : model.axes)
-    for (const HomingNeed& need : axis.homing_needs)
-      for (const ObjectId id : need.any_of) add(items, id, PollClass::once);
-  for (const Check& check : model.checks) add(items, check.bad.object, PollClass::once);
+  for (const model::AxisModel& axis : model.axes)
+    for (const model::ObjectId id : axis.zero_before_enable)
+      if (model.object(id).readable) add(items, id, model::PollClass::once);
+  for (const model::AxisModel& axis : model.axes)
+    for (const model::HomingNeed& need : axis.homing_needs)
+      for (const model::ObjectId id : need.any_of) add(items, id, model::PollClass::once);
+  for (const model::Check& check : model.checks) add(items, check.bad.object, model::PollClass::once);
   // Scales depend on them, and a panel or the mailbox may change what they follow from.
-  for (const ObjectId id : constant_objects(model)) add(items, id, PollClass::slow);
+  for (const model::ObjectId id : model::constant_objects(model)) add(items, id, model::PollClass::slow);
   std::erase_if(items, [&](const PollItem& item) {
     return !model.object(item.object).readable || comes_unsolicited(model, item.object);
   });
   for (PollItem& item : items)
-    for (const TpdoProperties& tpdo : model.canopen.tpdos)
+    for (const model::TpdoProperties& tpdo : model.canopen.tpdos)
       item.mapped = item.mapped || std::find(tpdo.map.begin(), tpdo.map.end(), item.object) != tpdo.map.end();
   return items;
 }
 
-PollPlan::PollPlan(const DriveModel& model) {
+PollPlan::PollPlan(const model::DriveModel& model) {
   for (const PollItem& item : poll_items(model)) {
     const auto index = static_cast<std::size_t>(item.poll_class);
-    const Duration period = item.poll_class == PollClass::once ? Duration{} : model.poll_period[index];
+    const Duration period = item.poll_class == model::PollClass::once ? Duration{} : model.poll_period[index];
     entries_.push_back({item.object, period, kNever, false, period, {}});
   }
 }
@@ -77,7 +78,7 @@ void PollPlan::restart(Instant now) {
   for (Entry& e : entries_) e = {e.object, e.beat, now, false, e.beat, {}};
 }
 
-void PollPlan::map(ObjectId object, std::optional<Duration> event, Duration confirm) {
+void PollPlan::map(model::ObjectId object, std::optional<Duration> event, Duration confirm) {
   Entry* e = entry(object);
   if (e == nullptr || e->beat == Duration{}) return;
   constexpr int kMissedEvents = 3;
@@ -94,24 +95,24 @@ void PollPlan::unmap_all(Instant now) {
   }
 }
 
-void PollPlan::received(ObjectId object, Instant now) {
+void PollPlan::received(model::ObjectId object, Instant now) {
   Entry* e = entry(object);
   if (e != nullptr && e->silence != Duration{} && !e->dropped) e->due = now + std::min(e->silence, e->limit);
 }
 
-void PollPlan::confirm_within(ObjectId object, std::optional<Duration> limit, Instant now) {
+void PollPlan::confirm_within(model::ObjectId object, std::optional<Duration> limit, Instant now) {
   Entry* e = entry(object);
   if (e == nullptr || e->silence == Duration{} || e->dropped) return;
   const Duration before = std::exchange(e->limit, limit.value_or(Duration::max()));
   if (e->limit < before) e->due = std::min(e->due, now + e->limit);
 }
 
-void PollPlan::hurry(ObjectId object, Instant now) {
+void PollPlan::hurry(model::ObjectId object, Instant now) {
   Entry* e = entry(object);
   if (e != nullptr && !e->dropped) e->due = std::min(e->due, now);
 }
 
-void PollPlan::first(ObjectId object) {
+void PollPlan::first(model::ObjectId object) {
   Entry* e = entry(object);
   if (e != nullptr && !e->dropped) e->due = kLongAgo;
 }
@@ -122,18 +123,18 @@ const PollPlan::Entry* PollPlan::earliest() const {
   return found == entries_.end() ? nullptr : &*found;
 }
 
-PollPlan::Entry* PollPlan::entry(ObjectId object) {
+PollPlan::Entry* PollPlan::entry(model::ObjectId object) {
   const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
   return found == entries_.end() ? nullptr : &*found;
 }
 
-std::optional<ObjectId> PollPlan::next(Instant now) const {
+std::optional<model::ObjectId> PollPlan::next(Instant now) const {
   const Entry* e = earliest();
   if (e == nullptr || e->asked_at() > now) return std::nullopt;
   return e->object;
 }
 
-bool PollPlan::due(ObjectId object, Instant now) const {
+bool PollPlan::due(model::ObjectId object, Instant now) const {
   return std::any_of(entries_.begin(), entries_.end(),
                      [&](const Entry& e) { return e.object == object && e.asked_at() <= now; });
 }
@@ -143,7 +144,7 @@ Instant PollPlan::next_due() const {
   return e == nullptr ? kNever : e->asked_at();
 }
 
-void PollPlan::done(ObjectId object, Instant now) {
+void PollPlan::done(model::ObjectId object, Instant now) {
   Entry* e = entry(object);
   if (e == nullptr || e->due == kNever) return;
   if (e->period == Duration{}) {
@@ -160,14 +161,14 @@ void PollPlan::done(ObjectId object, Instant now) {
   e->due = (on_time ? e->due : now) + e->period;
 }
 
-void PollPlan::drop(ObjectId object) {
+void PollPlan::drop(model::ObjectId object) {
   Entry* e = entry(object);
   if (e == nullptr) return;
   e->due = kNever;
   e->dropped = true;
 }
 
-void PollPlan::rest(ObjectId object, Instant until) {
+void PollPlan::rest(model::ObjectId object, Instant until) {
   Entry* e = entry(object);
   if (e != nullptr && !e->dropped) e->due = e->rests = until;
 }
@@ -180,7 +181,7 @@ void PollPlan::wake(Instant now) {
   }
 }
 
-void PollPlan::written(ObjectId object, Instant now) {
+void PollPlan::written(model::ObjectId object, Instant now) {
   Entry* e = entry(object);
   if (e != nullptr && e->period == Duration{} && !e->dropped) e->due = std::min(e->due, now);
 }
@@ -193,7 +194,7 @@ void PollPlan::refresh(Instant now) {
   }
 }
 
-Duration PollPlan::period(ObjectId object) const {
+Duration PollPlan::period(model::ObjectId object) const {
   const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
   return found == entries_.end() ? Duration{} : found->period;
 }

@@ -7,22 +7,22 @@
 namespace axisgate::drive {
 namespace {
 
-int last_register(const ObjectDef& object) { return object.address.index + (object.size > 2 ? 1 : 0); }
+int last_register(const model::ObjectDef& object) { return object.address.index + (object.size > 2 ? 1 : 0); }
 
-bool same_query(const ObjectDef& a, const ObjectDef& b) {
+bool same_query(const model::ObjectDef& a, const model::ObjectDef& b) {
   return a.address.index == b.address.index && a.address.sub == b.address.sub;
 }
 
 }  // namespace
 
-std::vector<PlannedRead> planned_reads(const DriveModel& model) {
+std::vector<PlannedRead> planned_reads(const model::DriveModel& model) {
   const ReadBlocks blocks(model);
   const std::vector<PollItem> items = poll_items(model);
   std::vector<PlannedRead> out;
   for (const PollItem& item : items) {
-    const ObjectDef& object = model.object(item.object);
+    const model::ObjectDef& object = model.object(item.object);
     bus::Exchange exchange{model.node, bus::Access::read, object.address, object.size, 0};
-    blocks.widen(exchange, [](ObjectId) { return true; });
+    blocks.widen(exchange, [](model::ObjectId) { return true; });
     const auto same = std::find_if(out.begin(), out.end(), [&](const PlannedRead& read) {
       return !exchange.more.empty() && read.exchange == exchange;
     });
@@ -34,14 +34,15 @@ std::vector<PlannedRead> planned_reads(const DriveModel& model) {
   return out;
 }
 
-ReadBlocks::ReadBlocks(const DriveModel& model) : model_(model) {
+ReadBlocks::ReadBlocks(const model::DriveModel& model) : model_(model) {
   const std::vector<PollItem> items = poll_items(model);
-  constexpr std::array kClasses{PollClass::fast, PollClass::normal, PollClass::slow, PollClass::once};
+  constexpr std::array kClasses{model::PollClass::fast, model::PollClass::normal, model::PollClass::slow,
+                                model::PollClass::once};
   for (const auto& [first, last] : model.rtu.runs) {
-    for (const PollClass poll_class : kClasses) {
-      std::vector<ObjectId> neighbours;
+    for (const model::PollClass poll_class : kClasses) {
+      std::vector<model::ObjectId> neighbours;
       for (const PollItem& item : items) {
-        const ObjectDef& object = model.object(item.object);
+        const model::ObjectDef& object = model.object(item.object);
         const bool inside = !object.emulated && object.address.index >= first && last_register(object) <= last;
         if (item.poll_class == poll_class && inside) neighbours.push_back(item.object);
       }
@@ -61,29 +62,30 @@ void ReadBlocks::group_answers() {
     if (objects[i].emulated || !objects[i].readable || grouped) continue;
     Block block{{}, 0, true};
     for (std::size_t k = i; k < objects.size() && block.objects.size() < bus::kMaxReplyFields; ++k) {
-      const bool there = std::any_of(block.objects.begin(), block.objects.end(), [&](ObjectId id) {
+      const bool there = std::any_of(block.objects.begin(), block.objects.end(), [&](model::ObjectId id) {
         return model_.object(id).address == objects[k].address;  // an alias comes with the other
       });
       if (!objects[k].emulated && objects[k].readable && same_query(objects[i], objects[k]) && !there)
-        block.objects.push_back(static_cast<ObjectId>(k));
+        block.objects.push_back(static_cast<model::ObjectId>(k));
     }
     if (block.objects.size() < 2) continue;
-    std::sort(block.objects.begin(), block.objects.end(),
-              [&](ObjectId a, ObjectId b) { return model_.object(a).address < model_.object(b).address; });
+    std::sort(block.objects.begin(), block.objects.end(), [&](model::ObjectId a, model::ObjectId b) {
+      return model_.object(a).address < model_.object(b).address;
+    });
     blocks_.push_back(std::move(block));
   }
 }
 
-void ReadBlocks::pack(const std::vector<ObjectId>& neighbours) {
-  std::vector<ObjectId> sorted = neighbours;
+void ReadBlocks::pack(const std::vector<model::ObjectId>& neighbours) {
+  std::vector<model::ObjectId> sorted = neighbours;
   std::sort(sorted.begin(), sorted.end(),
-            [&](ObjectId a, ObjectId b) { return model_.object(a).address < model_.object(b).address; });
+            [&](model::ObjectId a, model::ObjectId b) { return model_.object(a).address < model_.object(b).address; });
   Block block;
   const auto close = [&] {
     if (block.objects.size() > 1) blocks_.push_back(block);
     block = {};
   };
-  for (const ObjectId id : sorted) {
+  for (const model::ObjectId id : sorted) {
     if (!block.objects.empty()) {
       const int first = model_.object(block.objects.front()).address.index;
       const bool fits = last_register(model_.object(id)) - first + 1 <= model_.rtu.max_registers;
@@ -94,18 +96,18 @@ void ReadBlocks::pack(const std::vector<ObjectId>& neighbours) {
   close();
 }
 
-std::size_t ReadBlocks::block_of(const bus::Exchange& exchange) const {
+std::size_t drive::ReadBlocks::block_of(const bus::Exchange& exchange) const {
   if (exchange.access != bus::Access::read) return kNone;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    for (const ObjectId id : blocks_[i].objects) {
-      const ObjectDef& object = model_.object(id);
+    for (const model::ObjectId id : blocks_[i].objects) {
+      const model::ObjectDef& object = model_.object(id);
       if (object.address == exchange.object && object.size == exchange.size) return i;
     }
   return kNone;
 }
 
-void ReadBlocks::add(bus::Exchange& exchange, ObjectId id) const {
-  const ObjectDef& object = model_.object(id);
+void drive::ReadBlocks::add(bus::Exchange& exchange, model::ObjectId id) const {
+  const model::ObjectDef& object = model_.object(id);
   if (exchange.size == 0) {
     exchange.object = object.address;
     exchange.size = object.size;
@@ -114,14 +116,14 @@ void ReadBlocks::add(bus::Exchange& exchange, ObjectId id) const {
   }
 }
 
-bool ReadBlocks::refused(const bus::Exchange& exchange) {
+bool drive::ReadBlocks::refused(const bus::Exchange& exchange) {
   if (exchange.more.empty() || one_answer(exchange)) return false;
   const std::size_t at = block_of(exchange);
   if (at == kNone) return true;  // it fell in two while this was on the wire
-  const bus::ObjectAddress middle = exchange.more[exchange.more.size() / 2].object;
+  const ObjectAddress middle = exchange.more[exchange.more.size() / 2].object;
   auto& objects = blocks_[at].objects;
-  const auto cut =
-      std::find_if(objects.begin(), objects.end(), [&](ObjectId id) { return model_.object(id).address >= middle; });
+  const auto cut = std::find_if(objects.begin(), objects.end(),
+                                [&](model::ObjectId id) { return model_.object(id).address >= middle; });
   Block upper{{cut, objects.end()}, 0, false};
   objects.erase(cut, objects.end());
   blocks_[at].silences = 0;
@@ -129,14 +131,14 @@ bool ReadBlocks::refused(const bus::Exchange& exchange) {
   return true;
 }
 
-bool ReadBlocks::silent(const bus::Exchange& exchange) {
+bool drive::ReadBlocks::silent(const bus::Exchange& exchange) {
   if (exchange.more.empty()) return false;
   const std::size_t at = block_of(exchange);
   if (at == kNone || ++blocks_[at].silences < kSilences) return false;
   return refused(exchange);
 }
 
-void ReadBlocks::answered(const bus::Exchange& exchange) {
+void drive::ReadBlocks::answered(const bus::Exchange& exchange) {
   if (exchange.more.empty()) return;
   const std::size_t at = block_of(exchange);
   if (at != kNone) blocks_[at].silences = 0;

@@ -8,33 +8,34 @@
 #include <concepts>
 #include <vector>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/drive/device/poll_plan.hpp"
 
 namespace axisgate::drive {
 
 /// One request of the poll plan, as long as the drive refuses none.
 struct PlannedRead {
-  PollClass poll_class = PollClass::normal;
+  model::PollClass poll_class = model::PollClass::normal;
   bus::Exchange exchange;
 };
 /// What keeping the image of these axes true asks of the bus: each request once.
-[[nodiscard]] std::vector<PlannedRead> planned_reads(const DriveModel& model);
+[[nodiscard]] std::vector<PlannedRead> planned_reads(const model::DriveModel& model);
 
 class ReadBlocks {
  public:
   /// A request that stays without any answer this often in a row is taken for refused.
   static constexpr int kSilences = 2;
 
-  explicit ReadBlocks(const DriveModel& model);
+  explicit ReadBlocks(const model::DriveModel& model);
 
   /// Makes a plain read of one object one of all objects of its block that are wanted as well.
-  template <std::predicate<ObjectId> Wanted>
+  template <std::predicate<model::ObjectId> Wanted>
   void widen(bus::Exchange& exchange, Wanted wanted) const {
     const std::size_t at = block_of(exchange);
     if (at == kNone) return;
     bus::Exchange wide = exchange;
     wide.size = 0;
-    for (const ObjectId id : blocks_[at].objects)
+    for (const model::ObjectId id : blocks_[at].objects)
       if (blocks_[at].one_answer || wanted(id) || model_.object(id).address == exchange.object) add(wide, id);
     exchange = wide;
   }
@@ -52,17 +53,17 @@ class ReadBlocks {
 
  private:
   struct Block {
-    std::vector<ObjectId> objects;  ///< by ascending register, or byte
+    std::vector<model::ObjectId> objects;  ///< by ascending register, or byte
     int silences = 0;
     bool one_answer = false;
   };
   static constexpr std::size_t kNone = SIZE_MAX;
-  void pack(const std::vector<ObjectId>& neighbours);
+  void pack(const std::vector<model::ObjectId>& neighbours);
   void group_answers();
   [[nodiscard]] std::size_t block_of(const bus::Exchange& exchange) const;
-  void add(bus::Exchange& exchange, ObjectId id) const;
+  void add(bus::Exchange& exchange, model::ObjectId id) const;
 
-  const DriveModel& model_;
+  const model::DriveModel& model_;
   std::vector<Block> blocks_;
 };
 

@@ -8,14 +8,14 @@
 
 namespace axisgate::drive {
 
-[[nodiscard]] bus::Exchange read_of(const DriveModel& model, ObjectId object);
+[[nodiscard]] bus::Exchange read_of(const model::DriveModel& model, model::ObjectId object);
 /// As many registers as tell its reply from one that is owed.
-[[nodiscard]] bus::Exchange read_of(const DriveModel& model, const ResyncRead& read);
+[[nodiscard]] bus::Exchange read_of(const model::DriveModel& model, const model::ResyncRead& read);
 /// A read that every drive of this type answers.
-[[nodiscard]] bus::Exchange plain_read(const DriveModel& model);
+[[nodiscard]] bus::Exchange plain_read(const model::DriveModel& model);
 /// A read that shows that the drive is there.
-[[nodiscard]] bus::Exchange probe_read(const DriveModel& model);
+[[nodiscard]] bus::Exchange probe_read(const model::DriveModel& model);
 /// Another object than that of probe_read(), where the drive has one.
-[[nodiscard]] bus::Exchange other_probe_read(const DriveModel& model);
+[[nodiscard]] bus::Exchange other_probe_read(const model::DriveModel& model);
 
 }  // namespace axisgate::drive

@@ -9,7 +9,7 @@ namespace {
 std::uint8_t registers_of(std::uint8_t bytes) { return bytes > 2 ? 2 : 1; }
 
 // A reply names what was asked for; which of the values in it was meant (Keya: by their bytes) it does not tell.
-bus::ObjectAddress named_by_reply(bus::ObjectAddress object) {
+ObjectAddress named_by_reply(ObjectAddress object) {
   object.byte = 0;
   return object;
 }
@@ -22,19 +22,19 @@ std::uint8_t registers_of(const bus::Exchange& exchange) {
   return static_cast<std::uint8_t>(last.object.index - exchange.object.index + registers_of(last.size));
 }
 
-Resync::Likeness Resync::of(const bus::Exchange& exchange) const {
+drive::Resync::Likeness drive::Resync::of(const bus::Exchange& exchange) const {
   if (!facts_.by_length) return {named_by_reply(exchange.object), 0};
   // The reply to a write has a function code of its own: no read's reply is like it.
   return {{}, exchange.access == bus::Access::write ? std::uint8_t{0} : registers_of(exchange)};
 }
 
-Resync::Likeness Resync::of(const ResyncRead& read) const {
-  const ObjectDef& object = objects_[read.object];
+Resync::Likeness Resync::of(const model::ResyncRead& read) const {
+  const model::ObjectDef& object = objects_[read.object];
   if (!facts_.by_length) return {named_by_reply(object.address), 0};
   return {{}, read.registers != 0 ? read.registers : registers_of(object.size)};
 }
 
-void Resync::lost(const bus::Exchange& exchange, Instant now) {
+void drive::Resync::lost(const bus::Exchange& exchange, Instant now) {
   suspect_ = true;
   last_lost_ = now;
   const Likeness like = of(exchange);
@@ -47,7 +47,7 @@ void Resync::lost(const bus::Exchange& exchange, Instant now) {
     lost_.push_back({like});
 }
 
-void Resync::refused(const bus::Exchange& exchange, Instant now) {
+void drive::Resync::refused(const bus::Exchange& exchange, Instant now) {
   lost(exchange, now);
   const Likeness like = of(exchange);
   if (!is_refused(like) && refused_.size() < kMaxLost) refused_.push_back(like);
@@ -63,10 +63,10 @@ bool Resync::is_refused(const Likeness& like) const {
   return std::find(refused_.begin(), refused_.end(), like) != refused_.end();
 }
 
-std::optional<ResyncRead> Resync::candidate() const {
-  std::optional<ResyncRead> unanswered;
+std::optional<model::ResyncRead> Resync::candidate() const {
+  std::optional<model::ResyncRead> unanswered;
   for (std::size_t i = 0; i < facts_.candidates.size(); ++i) {
-    const ResyncRead& read = facts_.candidates[i];
+    const model::ResyncRead& read = facts_.candidates[i];
     if (owed(of(read)) != 0 || is_refused(of(read))) continue;
     if (!unanswered_.contains(i)) return read;
     if (!unanswered) unanswered = read;
@@ -74,9 +74,11 @@ std::optional<ResyncRead> Resync::candidate() const {
   return unanswered;
 }
 
-void Resync::resync_sent(const ResyncRead& read) {
+void Resync::resync_sent(const model::ResyncRead& read) {
   ++resyncs_;
-  const auto same = [&](const ResyncRead& r) { return r.object == read.object && r.registers == read.registers; };
+  const auto same = [&](const model::ResyncRead& r) {
+    return r.object == read.object && r.registers == read.registers;
+  };
   const auto at = std::find_if(facts_.candidates.begin(), facts_.candidates.end(), same) - facts_.candidates.begin();
   if (sent_.size() < sent_.capacity()) sent_.push_back(static_cast<std::size_t>(at));
 }
@@ -102,7 +104,7 @@ bool Resync::counts_out() const {
   if (!facts_.by_length) return false;
   if (candidate()) return true;
   std::optional<Likeness> one;
-  for (const ResyncRead& read : facts_.candidates) {
+  for (const model::ResyncRead& read : facts_.candidates) {
     const Likeness like = of(read);
     if (is_refused(like)) continue;
     if (one && !(*one == like)) return true;
@@ -111,9 +113,9 @@ bool Resync::counts_out() const {
   return false;
 }
 
-ResyncRead Resync::counted() {
-  const ResyncRead* least = nullptr;
-  for (const ResyncRead& read : facts_.candidates) {
+model::ResyncRead Resync::counted() {
+  const model::ResyncRead* least = nullptr;
+  for (const model::ResyncRead& read : facts_.candidates) {
     const Likeness like = of(read);
     if (counting_ && counting_->like == like) return read;
     if (is_refused(like)) continue;

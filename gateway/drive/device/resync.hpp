@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "adapters/bus/exchange.hpp"
 #include "gateway/model/model.hpp"
 
 namespace axisgate::drive {
@@ -24,7 +25,8 @@ class Resync {
   /// out in the length that was lost least.
   static constexpr int kMaxOwed = 64;
 
-  Resync(const ResyncProperties& facts, const std::vector<ObjectDef>& objects) : facts_(facts), objects_(objects) {}
+  Resync(const model::ResyncProperties& facts, const std::vector<model::ObjectDef>& objects)
+      : facts_(facts), objects_(objects) {}
 
   /// This exchange was given up.
   void lost(const bus::Exchange& exchange, Instant now);
@@ -37,8 +39,8 @@ class Resync {
   /// All resynchronisation reads are used up.
   [[nodiscard]] bool exhausted() const { return resyncs_ >= kMaxResyncs; }
   /// The read that is the next resynchronisation read; none: no distinguishable one is left.
-  [[nodiscard]] std::optional<ResyncRead> candidate() const;
-  void resync_sent(const ResyncRead& read);
+  [[nodiscard]] std::optional<model::ResyncRead> candidate() const;
+  void resync_sent(const model::ResyncRead& read);
   /// From then on every reply still owed by the drive would break its worst_reply: a plain read is safe.
   [[nodiscard]] Instant silent_until() const {
     return last_lost_ == kLongAgo ? kLongAgo : last_lost_ + facts_.worst_reply;
@@ -49,7 +51,7 @@ class Resync {
   /// After the silence replies are distinguished still: by counting, or by a length that is owed no more.
   [[nodiscard]] bool counts_out() const;
   /// The read whose reply counts for nothing but its number; only where there is no candidate and counts_out().
-  [[nodiscard]] ResyncRead counted();
+  [[nodiscard]] model::ResyncRead counted();
   /// A read from counted() was answered.
   void counted_one();
   /// The drive refuses this read: its length is of no use.
@@ -58,7 +60,7 @@ class Resync {
  private:
   /// All by which the reply of a read can be distinguished from others.
   struct Likeness {
-    bus::ObjectAddress object;   ///< where replies name it
+    ObjectAddress object;        ///< where replies name it
     std::uint8_t registers = 0;  ///< where they do not
     friend bool operator==(const Likeness&, const Likeness&) = default;
   };
@@ -71,12 +73,12 @@ class Resync {
     int left = 0;  ///< replies until one of them must be to a read that was sent since
   };
   [[nodiscard]] Likeness of(const bus::Exchange& exchange) const;
-  [[nodiscard]] Likeness of(const ResyncRead& read) const;
+  [[nodiscard]] Likeness of(const model::ResyncRead& read) const;
   [[nodiscard]] int owed(const Likeness& like) const;
   [[nodiscard]] bool is_refused(const Likeness& like) const;
 
-  const ResyncProperties& facts_;
-  const std::vector<ObjectDef>& objects_;
+  const model::ResyncProperties& facts_;
+  const std::vector<model::ObjectDef>& objects_;
   // One lost exchange, its resynchronisation reads and the stops sent meanwhile (three repeats); more cannot be before
   // it is offline.
   static constexpr std::size_t kMaxLost = 16;

@@ -16,7 +16,7 @@ namespace axisgate::drive {
 struct AxisFacts {
   Instant at = kLongAgo;   ///< now
   bool reachable = false;  ///< link_state online or suspect
-  State402 state = State402::not_ready_to_switch_on;
+  model::State402 state = model::State402::not_ready_to_switch_on;
   int mode = 0;                    ///< mode in force, unified number
   bool own_velocity_mode = false;  ///< and it is, or may be, one of the drive's own that follows a target velocity
   /// The controlword in effect has the bits of operation enabled: without them the axis is on its way out of it,
@@ -35,8 +35,10 @@ struct AxisFacts {
   std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
   std::optional<std::uint64_t> position_exchange{};  ///< and the newest position; none: nothing tells of it
 
-  [[nodiscard]] bool enabled() const { return reachable && state == State402::operation_enabled; }
-  [[nodiscard]] bool faulted() const { return state == State402::fault || state == State402::fault_reaction_active; }
+  [[nodiscard]] bool enabled() const { return reachable && state == model::State402::operation_enabled; }
+  [[nodiscard]] bool faulted() const {
+    return state == model::State402::fault || state == model::State402::fault_reaction_active;
+  }
 };
 
 /// A target velocity or torque acts at once in the mode in force.

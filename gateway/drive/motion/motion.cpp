@@ -35,7 +35,7 @@ std::optional<Target> target_of(Quantity quantity) {
 
 }  // namespace
 
-bool is_continuous(const AxisFacts& facts) { return is_continuous(facts.mode) || facts.own_velocity_mode; }
+bool is_continuous(const AxisFacts& facts) { return model::is_continuous(facts.mode) || facts.own_velocity_mode; }
 
 std::optional<Quantity> followed_target(const AxisFacts& facts) {
   if (!is_continuous(facts)) return std::nullopt;
@@ -58,25 +58,25 @@ void Motion::stop(bool latch, Instant now) {
   unlatch_armed_ = false;
 }
 
-Motion::Pass Motion::pass(Request402 request) const {
+Motion::Pass Motion::pass(model::Request402 request) const {
   if (!latched_) return Pass::passes;
   switch (request) {
-    case Request402::disable_voltage:
-    case Request402::quick_stop:
-    case Request402::shutdown:
-    case Request402::switch_on:
+    case model::Request402::disable_voltage:
+    case model::Request402::quick_stop:
+    case model::Request402::shutdown:
+    case model::Request402::switch_on:
       return Pass::passes;
-    case Request402::enable_operation:
+    case model::Request402::enable_operation:
       return unlatch_armed_ ? Pass::passes_and_unlatches : Pass::refused;
-    case Request402::other:
+    case model::Request402::other:
       return Pass::refused;
   }
   return Pass::refused;
 }
 
-void Motion::passed(Request402 request) {
-  if (request == Request402::shutdown || request == Request402::switch_on) unlatch_armed_ = true;
-  if (request == Request402::enable_operation && unlatch_armed_) enabled();
+void Motion::passed(model::Request402 request) {
+  if (request == model::Request402::shutdown || request == model::Request402::switch_on) unlatch_armed_ = true;
+  if (request == model::Request402::enable_operation && unlatch_armed_) enabled();
 }
 
 // What runs ---------------------------------------------------------------------------------------------------------
@@ -247,7 +247,7 @@ bool Motion::rest_wants_sample(const AxisFacts& facts) const {
 AxisState Motion::axis_state(const AxisFacts& facts) const {
   if (!facts.reachable) return AxisState::unknown;
   if (facts.faulted()) return AxisState::error_stop;
-  if (latched_ || facts.state == State402::quick_stop_active) return AxisState::stopping;
+  if (latched_ || facts.state == model::State402::quick_stop_active) return AxisState::stopping;
   if (!facts.enabled()) return AxisState::disabled;  // it may coast: nothing of ours stops it any more
   if (at_rest(facts)) return AxisState::standstill;
   // A raw run that was begun since is no stop, although the axis was never seen to stand between the two.

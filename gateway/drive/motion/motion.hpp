@@ -57,8 +57,8 @@ class Motion {
 
   enum class Pass : std::uint8_t { refused, passes, passes_and_unlatches };
   /// While latched, `controlword` passes only stops and the two steps: 6 or 7, and then 15.
-  [[nodiscard]] Pass pass(Request402 request) const;
-  void passed(Request402 request);
+  [[nodiscard]] Pass pass(model::Request402 request) const;
+  void passed(model::Request402 request);
 
   // --- What runs -----------------------------------------------------------------------------------------------------
 

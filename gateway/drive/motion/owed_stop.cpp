@@ -23,24 +23,24 @@ OwedStop::End OwedStop::attempted(StopKind stop, bool shown, std::uint64_t excha
   return End::none;
 }
 
-OwedStop::End OwedStop::state_read(State402 state, std::uint64_t exchange, bool turns) {
+OwedStop::End OwedStop::state_read(model::State402 state, std::uint64_t exchange, bool turns) {
   if (!stop_ || exchange <= after_) return End::none;
   switch (state) {
-    case State402::operation_enabled:
+    case model::State402::operation_enabled:
       read_enabled_ = true;
       return End::none;
-    case State402::quick_stop_active:
+    case model::State402::quick_stop_active:
       // It stands, or will, and holds its torque: less than a disable asks for.
       if (sent_ && !turns && *stop_ != StopKind::disable) return discharge(End::shown);
       read_enabled_ = true;
       return End::none;
-    case State402::fault_reaction_active:
+    case model::State402::fault_reaction_active:
       return End::none;  // a stop of the drive's own; what comes of it the next read tells
-    case State402::not_ready_to_switch_on:
-    case State402::switch_on_disabled:
-    case State402::ready_to_switch_on:
-    case State402::switched_on:
-    case State402::fault:
+    case model::State402::not_ready_to_switch_on:
+    case model::State402::switch_on_disabled:
+    case model::State402::ready_to_switch_on:
+    case model::State402::switched_on:
+    case model::State402::fault:
       break;
   }
   if (turns) {

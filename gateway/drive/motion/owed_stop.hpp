@@ -41,7 +41,7 @@ class OwedStop {
   End attempted(StopKind stop, bool shown, std::uint64_t exchange, Instant now);
   /// What the drive shows, by this exchange. `turns`: the motor turns in that state by its torque, whatever the state
   /// says.
-  End state_read(State402 state, std::uint64_t exchange, bool turns = false);
+  End state_read(model::State402 state, std::uint64_t exchange, bool turns = false);
   /// It was shown, and the motor turns on all the same.
   void unheeded(StopKind stop, std::uint64_t exchange) {
     accepted(stop, exchange);

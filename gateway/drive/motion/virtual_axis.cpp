@@ -6,25 +6,25 @@
 
 namespace axisgate::drive {
 
-void VirtualAxis::control(std::uint16_t word, const VirtualProperties& facts) {
-  switch (request_of(word)) {
-    case Request402::disable_voltage:
+void VirtualAxis::control(std::uint16_t word, const model::VirtualProperties& facts) {
+  switch (model::request_of(word)) {
+    case model::Request402::disable_voltage:
       gate_ = Gate::disabled;
       break;
-    case Request402::quick_stop:
+    case model::Request402::quick_stop:
       gate_ = facts.quick_stop_energised && (gate_ == Gate::open || gate_ == Gate::quick_stopped) ? Gate::quick_stopped
                                                                                                   : Gate::disabled;
       break;
-    case Request402::shutdown:
+    case model::Request402::shutdown:
       gate_ = Gate::ready;
       break;
-    case Request402::switch_on:
+    case model::Request402::switch_on:
       gate_ = Gate::switched_on;
       break;
-    case Request402::enable_operation:
+    case model::Request402::enable_operation:
       if (gate_ != Gate::disabled && gate_ != Gate::unknown) gate_ = Gate::open;
       break;
-    case Request402::other:
+    case model::Request402::other:
       break;
   }
 }
@@ -49,7 +49,7 @@ void VirtualAxis::follow_drive(const Seen& seen) {
   if (seen.enabled && !seen.fault && gate_ != Gate::quick_stopped) gate_ = Gate::open;
 }
 
-void VirtualAxis::observe(const Seen& seen, const VirtualProperties& facts) {
+void VirtualAxis::observe(const Seen& seen, const model::VirtualProperties& facts) {
   const bool first_look = gate_ == Gate::unknown;
   if (facts.gate_only)
     keep_gate(seen);
@@ -65,7 +65,7 @@ bool VirtualAxis::take_found_enabled() { return std::exchange(found_enabled_, fa
 
 // What the drive does not tell is worked out from what it does: a motion is over when the axis has moved and stands
 // again (or has had its time to begin), and it has reached its target if the position read after that says so.
-void VirtualAxis::follow(const Seen& seen, const VirtualProperties& facts) {
+void VirtualAxis::follow(const Seen& seen, const model::VirtualProperties& facts) {
   run_.moved = run_.moved || seen.moving;
   if (seen.moving) run_.seen_moving = seen.invalidations;
   if (!seen.standing) {
@@ -137,20 +137,20 @@ std::uint16_t VirtualAxis::statusword(const Seen& seen) const {
     }
   }
   const auto set = [&](std::uint16_t mask, bool on) { word = on ? static_cast<std::uint16_t>(word | mask) : word; };
-  set(statusword::kInternalLimit, seen.limit);
-  if (word != kEnabled && word != (kEnabled | statusword::kInternalLimit)) return word;
-  const bool started = (seen.controlword & controlword::kStart) != 0;
+  set(model::statusword::kInternalLimit, seen.limit);
+  if (word != kEnabled && word != (kEnabled | model::statusword::kInternalLimit)) return word;
+  const bool started = (seen.controlword & model::controlword::kStart) != 0;
   switch (seen.mode) {
     case 1:
-      set(statusword::kTargetReached, end_ == End::reached);
-      set(statusword::kSetpointAcknowledge, started && run_.kind == MotionKind::discrete);
+      set(model::statusword::kTargetReached, end_ == End::reached);
+      set(model::statusword::kSetpointAcknowledge, started && run_.kind == MotionKind::discrete);
       break;
     case 3:
-      set(statusword::kTargetReached, seen.at_velocity);
+      set(model::statusword::kTargetReached, seen.at_velocity);
       set(1U << 12, !seen.moving);  // CiA 402-2 table 131: speed is 0
       break;
     case 6:
-      set(statusword::kTargetReached, end_ != End::none || !run_.under_way);
+      set(model::statusword::kTargetReached, end_ != End::none || !run_.under_way);
       set(1U << 12, homing_attained());
       set(1U << 13, homing_failed());
       break;

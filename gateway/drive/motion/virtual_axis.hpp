@@ -48,10 +48,10 @@ class VirtualAxis {
     if (run_.kind == MotionKind::homing) end_ = End::none;
   }
   /// A controlword was carried out: its step in the state machine (CiA 402-2, 8.4).
-  void control(std::uint16_t word, const VirtualProperties& facts);
+  void control(std::uint16_t word, const model::VirtualProperties& facts);
   /// The drive has acknowledged a start in this exchange. `goal`: where the position will be, as the drive counts.
   void started(MotionKind kind, std::optional<std::int64_t> goal, Instant now, std::uint64_t exchange);
-  void observe(const Seen& seen, const VirtualProperties& facts);
+  void observe(const Seen& seen, const model::VirtualProperties& facts);
   /// The first look after reset() has found it enabled, by no word of ours (once).
   [[nodiscard]] bool take_found_enabled();
 
@@ -61,7 +61,7 @@ class VirtualAxis {
   [[nodiscard]] bool homing_failed() const { return end_ == End::failed && run_.kind == MotionKind::homing; }
   [[nodiscard]] bool homing_attained() const { return end_ == End::reached && run_.kind == MotionKind::homing; }
   /// Torque is on although the axis is not enabled, and no command of the bus can take it away.
-  [[nodiscard]] bool cannot_deenergise(const Seen& seen, const VirtualProperties& facts) const {
+  [[nodiscard]] bool cannot_deenergise(const Seen& seen, const model::VirtualProperties& facts) const {
     return facts.gate_only && seen.enabled && gate_ != Gate::open;
   }
 
@@ -82,7 +82,7 @@ class VirtualAxis {
   };
   void keep_gate(const Seen& seen);
   void follow_drive(const Seen& seen);
-  void follow(const Seen& seen, const VirtualProperties& facts);
+  void follow(const Seen& seen, const model::VirtualProperties& facts);
 
   Gate gate_ = Gate::unknown;
   bool found_enabled_ = false;

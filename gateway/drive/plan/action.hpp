@@ -34,37 +34,37 @@ enum class Mark : std::uint8_t {
 struct Action {
   enum class Kind : std::uint8_t { write, read, wait, mark };
   Kind kind = Kind::write;
-  ObjectId object = kNoObject;   ///< write, read; see Mark::values_invalidated
-  std::int64_t number = 0;       ///< write: as the drive counts; Mark::start_discrete: 1, the target is a distance;
-                                 ///< Mark::run_raw: 1, it was not enabled before
-  ObjectId copy_of = kNoObject;  ///< write: the newest number of this object instead
-  Condition until;               ///< wait: must hold on a sample asked for after the last acknowledgement
-  Effect effect = Effect::none;  ///< wait: for this instead of a condition
-  Duration limit{};              ///< wait
-  bool optional = false;         ///< no failure: a wait that runs out, a write of what the drive says it does not have
+  model::ObjectId object = model::kNoObject;  ///< write, read; see Mark::values_invalidated
+  std::int64_t number = 0;  ///< write: as the drive counts; Mark::start_discrete: 1, the target is a distance;
+                            ///< Mark::run_raw: 1, it was not enabled before
+  model::ObjectId copy_of = model::kNoObject;  ///< write: the newest number of this object instead
+  model::Condition until;                      ///< wait: must hold on a sample asked for after the last acknowledgement
+  Effect effect = Effect::none;                ///< wait: for this instead of a condition
+  Duration limit{};                            ///< wait
+  bool optional = false;  ///< no failure: a wait that runs out, a write of what the drive says it does not have
   Errc otherwise = Errc::not_reached;
   Mark mark{};
   std::optional<std::int64_t> ends_at{};  ///< Mark::start_discrete: in register units; none: the drive reckons it
 
-  [[nodiscard]] static Action write(ObjectId object, std::int64_t number) {
+  [[nodiscard]] static Action write(model::ObjectId object, std::int64_t number) {
     Action a;
     a.object = object;
     a.number = number;
     return a;
   }
-  [[nodiscard]] static Action copy(ObjectId from, ObjectId to) {
+  [[nodiscard]] static Action copy(model::ObjectId from, model::ObjectId to) {
     Action a;
     a.object = to;
     a.copy_of = from;
     return a;
   }
-  [[nodiscard]] static Action read(ObjectId object) {
+  [[nodiscard]] static Action read(model::ObjectId object) {
     Action a;
     a.kind = Kind::read;
     a.object = object;
     return a;
   }
-  [[nodiscard]] static Action wait(Condition until, Duration limit, bool optional = false,
+  [[nodiscard]] static Action wait(model::Condition until, Duration limit, bool optional = false,
                                    Errc otherwise = Errc::not_reached) {
     Action a;
     a.kind = Kind::wait;
@@ -81,7 +81,7 @@ struct Action {
     a.limit = limit;
     return a;
   }
-  [[nodiscard]] static Action at(Mark mark, ObjectId object = kNoObject) {
+  [[nodiscard]] static Action at(Mark mark, model::ObjectId object = model::kNoObject) {
     Action a;
     a.kind = Kind::mark;
     a.mark = mark;

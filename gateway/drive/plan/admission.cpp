@@ -17,17 +17,18 @@ Errc admit_command(const AxisCore& core, Command command) {
 }
 
 // The steps of a command that is nothing but this one write.
-bool is_alone(const Steps& steps, ObjectId id, std::int64_t number) {
-  const auto writes = [](const Step& step) { return step.verb == Step::Verb::write; };
+bool is_alone(const model::Steps& steps, model::ObjectId id, std::int64_t number) {
+  const auto writes = [](const model::Step& step) { return step.verb == model::Step::Verb::write; };
   const auto first = std::find_if(steps.begin(), steps.end(), writes);
   return first != steps.end() && std::count_if(steps.begin(), steps.end(), writes) == 1 && first->object == id &&
-         first->source == Step::Source::literal && first->literal == number;
+         first->source == model::Step::Source::literal && first->literal == number;
 }
 
-bool belongs_to_a_command(const AxisCore& core, ObjectId id) {
+bool belongs_to_a_command(const AxisCore& core, model::ObjectId id) {
   return std::any_of(core.model.commands.begin(), core.model.commands.end(), [&](const auto& def) {
-    return def && std::any_of(def->steps.begin(), def->steps.end(),
-                              [&](const Step& step) { return step.verb == Step::Verb::write && step.object == id; });
+    return def && std::any_of(def->steps.begin(), def->steps.end(), [&](const model::Step& step) {
+             return step.verb == model::Step::Verb::write && step.object == id;
+           });
   });
 }
 
@@ -36,15 +37,15 @@ bool belongs_to_a_command(const AxisCore& core, ObjectId id) {
 bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
   if (!core.drive.resync.by_length) return false;
   const auto last = [](int first, std::uint8_t size) { return first + (size > 2 ? 1 : 0); };
-  const auto guarded = [&](ObjectId id) {
+  const auto guarded = [&](model::ObjectId id) {
     const auto& bindings = core.model.bindings;
     return core.object(id).mailbox_reads_only || belongs_to_a_command(core, id) ||
            std::any_of(bindings.begin(), bindings.end(),
-                       [&](const Binding& b) { return b.object == id && b.writable; });
+                       [&](const model::Binding& b) { return b.object == id && b.writable; });
   };
   for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
-    const ObjectDef& object = core.drive.objects[i];
-    if (object.emulated || !object.writable || !guarded(static_cast<ObjectId>(i))) continue;
+    const model::ObjectDef& object = core.drive.objects[i];
+    if (object.emulated || !object.writable || !guarded(static_cast<model::ObjectId>(i))) continue;
     const int first = object.address.index;
     const bool overlaps = request.index <= last(first, object.size) && last(request.index, request.size) >= first;
     if (overlaps && (request.index != first || request.size != object.size)) return true;
@@ -53,11 +54,11 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
 }
 
 // The quantity that a write of this object is one of; where several are at its place, that of the mode in force.
-const Binding* quantity_at(const AxisCore& core, ObjectId id) {
-  const Binding* found = nullptr;
+const model::Binding* quantity_at(const AxisCore& core, model::ObjectId id) {
+  const model::Binding* found = nullptr;
   const auto of_mode = setpoint_of_mode(core.mode_in_force());
-  for (const Binding& binding : core.model.bindings) {
-    if (binding.object == kNoObject || !binding.writable || !same_place(core, id, binding.object)) continue;
+  for (const model::Binding& binding : core.model.bindings) {
+    if (binding.object == model::kNoObject || !binding.writable || !same_place(core, id, binding.object)) continue;
     if (found == nullptr || of_mode == binding.quantity) found = &binding;
   }
   return found;
@@ -67,7 +68,7 @@ const Binding* quantity_at(const AxisCore& core, ObjectId id) {
 // the gate and the latch. What the gateway has no command for, such as the drive's own jog, would know no limit and no
 // end by the dead man's button; a set-point that moves the axis by being written needs one that may start. No value: it
 // is none.
-std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t number, WriteBatch& out) {
+std::optional<Errc> as_command(const AxisCore& core, model::ObjectId id, std::int64_t number, WriteBatch& out) {
   if (!core.is_virtual() || !core.object(id).trigger || !belongs_to_a_command(core, id)) return std::nullopt;
   constexpr std::array kCommands{Command::quick_stop,    Command::halt,          Command::fault_reset,
                                  Command::move_absolute, Command::move_relative, Command::run_velocity,
@@ -86,13 +87,12 @@ std::optional<Errc> as_command(const AxisCore& core, ObjectId id, std::int64_t n
 
 // A further name of what a register says, another motor's object, one that moves or enables without any rule of ours
 // standing before it, or, where a write is always one of a whole control frame, one that is no field of it.
-bool out_of_reach(const AxisCore& core, ObjectId id) {
+bool out_of_reach(const AxisCore& core, model::ObjectId id) {
   const bool frames = !core.drive.composed.empty();
-  if (id == kNoObject) return frames;
-  const ObjectDef& object = core.object(id);
+  if (id == model::kNoObject) return frames;
+  const model::ObjectDef& object = core.object(id);
   if (object.mailbox_reads_only) return true;
-  if (object.slot != bus::kNoAxis && object.slot < core.drive.axes.size() &&
-      &core.drive.axes[object.slot] != &core.model)
+  if (object.slot != kNoAxis && object.slot < core.drive.axes.size() && &core.drive.axes[object.slot] != &core.model)
     return true;
   if (quantity_at(core, id) != nullptr || id == core.model.controlword || id == core.model.mode) return false;
   const bool enables = core.is_virtual() && !core.model.virtual_axis->gate_only;
@@ -111,23 +111,26 @@ bool can_be_asked_for(const AxisCore& core, const ObjectRequest& request) {
   if (request.size != 0) return fits_a_field(request.size);
   if (!request.write) return !by_length || request.count == 0 || fits_a_field(request.count);
   // Longer objects, and such of 3 bytes, are carried by a chain of exchanges: CANopen alone has them.
-  return is_canopen(core.drive) && request.bytes && !request.bytes->empty() && request.bytes->size() <= kMaxObjectBytes;
+  return model::is_canopen(core.drive) && request.bytes && !request.bytes->empty() &&
+         request.bytes->size() <= kMaxObjectBytes;
 }
 
 // Row 78, as each object counts that takes it. How a drive counts that it has not told yet is judged at its turn.
 bool set_position_fits(const AxisCore& core, std::int32_t value) {
-  const auto fits = [&](const Step& step) {
-    const Binding* unit = step.source == Step::Source::set_position ? core.model.binding(step.quantity) : nullptr;
+  const auto fits = [&](const model::Step& step) {
+    const model::Binding* unit =
+        step.source == model::Step::Source::set_position ? core.model.binding(step.quantity) : nullptr;
     if (unit == nullptr || !unit->scaled) return true;
-    const ObjectDef& object = core.object(step.object);
+    const model::ObjectDef& object = core.object(step.object);
     const auto raw = unit->to_raw(value, object);
     return raw && object.printed.holds(*raw);
   };
   const auto& def = core.model.command(Command::set_position);
-  return !def || (std::all_of(def->steps.begin(), def->steps.end(), fits) &&
-                  std::all_of(def->variants.begin(), def->variants.end(), [&](const CommandDef::Variant& variant) {
-                    return std::all_of(variant.steps.begin(), variant.steps.end(), fits);
-                  }));
+  return !def ||
+         (std::all_of(def->steps.begin(), def->steps.end(), fits) &&
+          std::all_of(def->variants.begin(), def->variants.end(), [&](const model::CommandDef::Variant& variant) {
+            return std::all_of(variant.steps.begin(), variant.steps.end(), fits);
+          }));
 }
 
 // What a row of the register map has given to the write batch, alone. No value: nothing.
@@ -167,14 +170,14 @@ bool is_distance(const WriteBatch& batch, Quantity quantity) {
 
 // Limits of the drive's own bound where it is sent: with command 6, or by a target that is all that is asked for. One
 // that merely stands in a scanner's block is held against them when it is to be moved to.
-Range range_of(const AxisCore& core, const WriteBatch& batch, const Binding& binding) {
+Range range_of(const AxisCore& core, const WriteBatch& batch, const model::Binding& binding) {
   const bool alone = batch.setpoints.size() == 1 && batch.command == Command::none && !batch.controlword;
   const bool sent_there = alone || batch.command == Command::move_absolute;
   return binding.quantity == Quantity::target_position && sent_there ? position_range(core, batch) : binding.limits;
 }
 
 // A button that is pressed and moves nothing, since the drive counts too coarsely, would be answered as done.
-bool jog_velocity_fits(const AxisCore& core, const Binding& velocity, std::int64_t value) {
+bool jog_velocity_fits(const AxisCore& core, const model::Binding& velocity, std::int64_t value) {
   if (!velocity.limits.holds(value)) return false;
   return value == 0 || !velocity.scaled || velocity.to_raw(value, core.object(velocity.object)).value_or(0) != 0;
 }
@@ -185,9 +188,9 @@ std::optional<std::int64_t> limit_beyond(const Range& range, std::int64_t value)
 }
 
 // Of an axis's limits, or of what its drive can count.
-std::optional<std::int64_t> limit_beyond(const AxisCore& core, const Binding& binding, const Range& range,
+std::optional<std::int64_t> limit_beyond(const AxisCore& core, const model::Binding& binding, const Range& range,
                                          std::int64_t value) {
-  const ObjectDef& object = core.object(binding.object);
+  const model::ObjectDef& object = core.object(binding.object);
   if (const auto limit = limit_beyond(range, value)) return limit;
   if (!binding.scaled || binding.to_raw(value, object)) return std::nullopt;
   const auto one = binding.to_register(object.range().min), other = binding.to_register(object.range().max);
@@ -217,13 +220,13 @@ int weight(const RegisterRow& row) {
 }  // namespace
 
 std::optional<PassedLimit> passed_limit(const AxisCore& core, const WriteBatch& batch) {
-  const Binding* velocity = core.model.binding(Quantity::target_velocity);
+  const model::Binding* velocity = core.model.binding(Quantity::target_velocity);
   if (batch.jog_velocity && velocity != nullptr)
     if (const auto limit = limit_beyond(core, *velocity, velocity->limits, *batch.jog_velocity))
       return PassedLimit{Kind::velocity, *limit};
   for (const Setpoint& sp : batch.setpoints) {
-    const Binding* binding = core.model.binding(sp.quantity);
-    if (binding == nullptr || binding->object == kNoObject || is_distance(batch, sp.quantity)) continue;
+    const model::Binding* binding = core.model.binding(sp.quantity);
+    if (binding == nullptr || binding->object == model::kNoObject || is_distance(batch, sp.quantity)) continue;
     if (const auto limit = limit_beyond(core, *binding, range_of(core, batch, *binding), sp.value))
       return PassedLimit{row(sp.quantity).kind, *limit};
   }
@@ -252,14 +255,14 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
   if (batch.controlword && !core.model.takes(Quantity::controlword)) return Errc::not_supported;
   if (batch.set_position_value && !core.model.supports(Command::set_position)) return Errc::not_supported;
   if (batch.set_position_value && !set_position_fits(core, *batch.set_position_value)) return Errc::bad_value;
-  const Binding* velocity = core.model.binding(Quantity::target_velocity);
+  const model::Binding* velocity = core.model.binding(Quantity::target_velocity);
   if (batch.jog_velocity && (velocity == nullptr || !core.model.command(Command::run_velocity)))
     return Errc::not_supported;
   if (const Errc code = admit_command(core, batch.command); code != Errc::ok) return code;
   if (batch.object && !can_be_asked_for(core, *batch.object)) return Errc::bad_value;
   if (batch.jog_velocity && !jog_velocity_fits(core, *velocity, *batch.jog_velocity)) return Errc::bad_value;
   for (const Setpoint& sp : batch.setpoints) {
-    const Binding* binding = core.model.binding(sp.quantity);
+    const model::Binding* binding = core.model.binding(sp.quantity);
     if (!is_distance(batch, sp.quantity) && !range_of(core, batch, *binding).holds(sp.value)) return Errc::bad_value;
     // The drive has not told yet how it counts: nobody knows whether it could take the value.
     if (!binding->scaled) return Errc::still_in_setup;
@@ -296,7 +299,7 @@ bool stops_alone(const WriteBatch& batch) {
 bool stops_at_most(const WriteBatch& batch) { return stops_alone(batch) || batch.command == Command::jog_end; }
 
 bool asks_to_enable(const WriteBatch& batch) {
-  return batch.command == Command::enable || (batch.controlword && enables(*batch.controlword));
+  return batch.command == Command::enable || (batch.controlword && model::enables(*batch.controlword));
 }
 
 bool asks_to_begin(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
@@ -316,7 +319,7 @@ WriteBatch stop_alone(const WriteBatch& batch) {
 bool stop_latches(const AxisCore& core, const WriteBatch& batch) {
   if (batch.latches || batch.command == Command::quick_stop) return true;
   if (batch.command == Command::halt) return halt_is_quick_stop(core);
-  return batch.controlword && request_of(*batch.controlword) == Request402::quick_stop;
+  return batch.controlword && model::request_of(*batch.controlword) == model::Request402::quick_stop;
 }
 
 bool starts_motion(const AxisCore& core, const WriteBatch& batch) {
@@ -331,16 +334,16 @@ Translated as_quantities(const AxisCore& core, const WriteBatch& batch) {
   if (!batch.object || !batch.object->write) return {batch, Errc::ok};
   const ObjectRequest& request = *batch.object;
   if (cuts_a_quantity(core, request)) return {batch, Errc::bad_value};
-  const ObjectId id = core.drive.find({request.index, request.subindex});
+  const model::ObjectId id = core.drive.find({request.index, request.subindex});
   if (out_of_reach(core, id)) return {batch, Errc::bad_value};
-  if (id == kNoObject) return {batch, Errc::ok};
-  const ObjectDef& object = core.object(id);
+  if (id == model::kNoObject) return {batch, Errc::ok};
+  const model::ObjectDef& object = core.object(id);
   WriteBatch out = batch;
   if (const auto trigger = as_command(core, id, object.number(request.data), out)) {
     if (request.size != object.size) return {batch, Errc::bad_value};
     return {out, *trigger};
   }
-  const Binding* binding = quantity_at(core, id);
+  const model::Binding* binding = quantity_at(core, id);
   out.object.reset();
   const bool of_a_quantity = id == core.model.controlword || id == core.model.mode || binding != nullptr;
   if (!of_a_quantity) return {batch, Errc::ok};

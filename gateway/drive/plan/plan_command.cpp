@@ -14,11 +14,11 @@ constexpr std::uint16_t kEnabledBits = 0x000F;
 
 // What the command requires before anything else.
 void add_requirements(const AxisCore& core, Command command, Plan& plan) {
-  const Steps* const steps = steps_of(core, command);
+  const model::Steps* const steps = steps_of(core, command);
   if (steps == nullptr) return;
-  const auto end =
-      std::find_if(steps->begin(), steps->end(), [](const Step& s) { return s.verb != Step::Verb::require; });
-  add_steps(core, Steps(steps->begin(), end), plan);
+  const auto end = std::find_if(steps->begin(), steps->end(),
+                                [](const model::Step& s) { return s.verb != model::Step::Verb::require; });
+  add_steps(core, model::Steps(steps->begin(), end), plan);
 }
 
 // homing_method must have been written or configured since bring-up and be in the profile's list.
@@ -30,10 +30,10 @@ std::optional<std::int64_t> homing_method(const AxisCore& core) {
 
 // The drive runs on and on towards a switch that no input listens to.
 bool switch_is_there(const AxisCore& core, std::int64_t method) {
-  for (const HomingNeed& need : core.model.homing_needs) {
+  for (const model::HomingNeed& need : core.model.homing_needs) {
     if (need.method != method) continue;
     if (std::none_of(need.any_of.begin(), need.any_of.end(),
-                     [&](ObjectId id) { return core.store[id].known && core.store[id].number == need.equals; }))
+                     [&](model::ObjectId id) { return core.store[id].known && core.store[id].number == need.equals; }))
       return false;
   }
   return true;
@@ -59,7 +59,7 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
     default:
       return std::nullopt;
   }
-  if (core.facts().enabled() || core.mode_chosen || core.model.mode == kNoObject) return std::nullopt;
+  if (core.facts().enabled() || core.mode_chosen || core.model.mode == model::kNoObject) return std::nullopt;
   // Enabling in a mode that nobody chose must not follow pulses, as a drive's own mode may that it has left its factory
   // in.
   const int mode = core.mode_in_force();
@@ -82,8 +82,8 @@ Errc admissible(const AxisCore& core, Command command) {
       return core.model.binding(Quantity::target_velocity) != nullptr ? Errc::ok : Errc::not_supported;
     case Command::run_torque: {
       if (core.model.binding(Quantity::target_torque) == nullptr) return Errc::not_supported;
-      const Binding* limit = core.model.binding(Quantity::max_velocity);
-      const bool there = limit != nullptr && limit->object != kNoObject && !core.store[limit->object].refused;
+      const model::Binding* limit = core.model.binding(Quantity::max_velocity);
+      const bool there = limit != nullptr && limit->object != model::kNoObject && !core.store[limit->object].refused;
       return there ? Errc::ok : Errc::bad_value;
     }
     case Command::home:
@@ -95,8 +95,8 @@ Errc admissible(const AxisCore& core, Command command) {
       return at_rest ? Errc::ok : Errc::busy;
     }
     case Command::save_parameters:
-      return facts.enabled() || facts.state == State402::quick_stop_active ||
-                     facts.state == State402::fault_reaction_active
+      return facts.enabled() || facts.state == model::State402::quick_stop_active ||
+                     facts.state == model::State402::fault_reaction_active
                  ? Errc::busy
                  : Errc::ok;
     default:
@@ -108,16 +108,16 @@ Errc admissible(const AxisCore& core, Command command) {
 // anew.
 void add_look_at_ramp(const AxisCore& core, Plan& plan) {
   constexpr Duration kBetweenLooks = std::chrono::milliseconds(20);
-  Condition left;
+  model::Condition left;
   left.object = core.model.statusword;
   left.mask = 0x6F;
-  left.test = Condition::Test::not_equals;
+  left.test = model::Condition::Test::not_equals;
   left.values = {0x07};
   plan.add(Action::wait(left, kBetweenLooks, true));
-  const Binding* velocity = core.model.binding(Quantity::velocity_actual);
+  const model::Binding* velocity = core.model.binding(Quantity::velocity_actual);
   if (core.model.moving)
     plan.add(Action::read(core.model.moving->object));
-  else if (velocity != nullptr && velocity->object != kNoObject)
+  else if (velocity != nullptr && velocity->object != model::kNoObject)
     plan.add(Action::read(velocity->object));
   plan.add(Action::at(Mark::look_again));
 }
@@ -134,7 +134,7 @@ Plan plan_enable(const AxisCore& core) {
     return plan;
   }
   // The first step takes the torque away: a ramp under way is let to its end before, however long the client waits.
-  if (facts.state == State402::quick_stop_active && facts.moving) {
+  if (facts.state == model::State402::quick_stop_active && facts.moving) {
     add_look_at_ramp(core, plan);
     return plan;
   }
@@ -183,7 +183,7 @@ Plan plan_move(const AxisCore& core, Command command) {
     wanted = Wanted{wanted->value + *base};
     command = Command::move_absolute;
   }
-  const Binding* target = core.model.binding(Quantity::target_position);
+  const model::Binding* target = core.model.binding(Quantity::target_position);
   const auto raw = wanted->exact ? wanted->exact : target->to_raw(wanted->value, core.object(target->object));
   if (!raw) return Plan::refuse(Errc::bad_value);
   Plan plan;
@@ -215,7 +215,7 @@ Plan plan_move(const AxisCore& core, Command command) {
 Plan plan_run(const AxisCore& core, Command command) {
   const bool velocity = command == Command::run_velocity;
   const Quantity quantity = velocity ? Quantity::target_velocity : Quantity::target_torque;
-  const Binding* binding = core.model.binding(quantity);
+  const model::Binding* binding = core.model.binding(quantity);
   if (binding == nullptr) return Plan::refuse(Errc::not_supported);
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
@@ -274,7 +274,7 @@ bool append(Plan& plan, Plan more) {
 }
 
 bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
-  const Steps* steps = steps_of(core, command);
+  const model::Steps* steps = steps_of(core, command);
   if (steps == nullptr) {
     plan.refusal = {Errc::not_supported, 0};
     return false;
@@ -284,7 +284,7 @@ bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
 }
 
 Errc judge_move(const AxisCore& core, bool relative) {
-  const Binding* target = core.model.binding(Quantity::target_position);
+  const model::Binding* target = core.model.binding(Quantity::target_position);
   const auto wanted = core.target_position();
   if (target == nullptr || !wanted) return Errc::state_unsuitable;
   std::int64_t end = wanted->value;
@@ -297,27 +297,27 @@ Errc judge_move(const AxisCore& core, bool relative) {
   return position_range(core).holds(end) ? Errc::ok : Errc::bad_value;
 }
 
-const Steps* steps_of(const AxisCore& core, Command command) {
+const model::Steps* steps_of(const AxisCore& core, Command command) {
   const auto& def = core.model.command(command);
   if (!def) return nullptr;
   const int mode = core.mode_in_force();
-  for (const CommandDef::Variant& variant : def->variants)
+  for (const model::CommandDef::Variant& variant : def->variants)
     if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end()) return &variant.steps;
   return def->steps.empty() && !def->variants.empty() ? nullptr : &def->steps;
 }
 
-void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
-  for (const Step& step : steps) {
+void add_steps(const AxisCore& core, const model::Steps& steps, Plan& plan) {
+  for (const model::Step& step : steps) {
     switch (step.verb) {
-      case Step::Verb::write:
-        if (step.source == Step::Source::literal) {
+      case model::Step::Verb::write:
+        if (step.source == model::Step::Source::literal) {
           plan.add(Action::write(step.object, step.literal));
-        } else if (step.source == Step::Source::set_position) {
-          const Binding* unit = core.model.binding(step.quantity);
+        } else if (step.source == model::Step::Source::set_position) {
+          const model::Binding* unit = core.model.binding(step.quantity);
           const auto raw = unit->to_raw(core.set_position_value, core.object(step.object));
           if (raw) plan.add(Action::write(step.object, *raw));
         } else if (step.quantity == Quantity::position_actual) {
-          const Binding* actual = core.model.binding(Quantity::position_actual);
+          const model::Binding* actual = core.model.binding(Quantity::position_actual);
           if (actual == nullptr) break;
           plan.add(Action::read(actual->object));
           plan.add(Action::copy(actual->object, step.object));
@@ -325,10 +325,10 @@ void add_steps(const AxisCore& core, const Steps& steps, Plan& plan) {
           static_cast<void>(add_write(core, step.quantity, *wanted, plan));
         }
         break;
-      case Step::Verb::wait:
+      case model::Step::Verb::wait:
         plan.add(Action::wait(step.until, step.limit, step.optional, step.otherwise));
         break;
-      case Step::Verb::require:
+      case model::Step::Verb::require:
         plan.add(Action::wait(step.until, Duration{}, false, step.otherwise));
         break;
     }
@@ -358,7 +358,7 @@ Plan plan_preparation(const AxisCore& core, Command command) {
   if (const Errc code = admissible(core, command); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
   // Torque without a speed limit runs away: what was invalidated since is read back before it counts as cached.
-  const Binding* limit = core.model.binding(Quantity::max_velocity);
+  const model::Binding* limit = core.model.binding(Quantity::max_velocity);
   if (command == Command::run_torque && !core.store[limit->object].cached) plan.add(Action::read(limit->object));
   const auto mode = mode_needed(core, command);
   // Refused, it must leave what runs as it was, its mode too.

@@ -6,16 +6,16 @@ namespace {
 
 constexpr Duration kEnableShows = std::chrono::milliseconds(300);
 
-Condition torque_on(const AxisCore& core) {
-  Condition c = torque_off(core);
-  c.test = Condition::Test::equals;
+model::Condition torque_on(const AxisCore& core) {
+  model::Condition c = torque_off(core);
+  c.test = model::Condition::Test::equals;
   c.values = {0x27};  // operation enabled
   return c;
 }
 
 // A raw start: the set-point held back until now goes first, and the move must lie within the limits.
 Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
-  const bool relative = (word & controlword::kRelative) != 0;
+  const bool relative = (word & model::controlword::kRelative) != 0;
   if (relative && !core.motion.at_rest(core.facts())) return Plan::refuse(Errc::busy);  // never added
   if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
@@ -40,32 +40,33 @@ Plan plan_raw_homing(const AxisCore& core) {
 bool word_starts(const AxisCore& core, std::uint16_t word, bool enabled) {
   const std::uint16_t before = core.controlword();
   const std::uint16_t follow_bits = core.is_virtual() ? std::uint16_t{0} : core.model.cia402.follow_bits;
-  const bool follows = (word & controlword::kStart) != 0 && (word & follow_bits) != 0;
-  if (!enabled) return follows && enables(word);
-  return rising(before, word, controlword::kStart) || (follows && rising(before, word, follow_bits));
+  const bool follows = (word & model::controlword::kStart) != 0 && (word & follow_bits) != 0;
+  if (!enabled) return follows && model::enables(word);
+  return model::rising(before, word, model::controlword::kStart) ||
+         (follows && model::rising(before, word, follow_bits));
 }
 
 Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_follows) {
-  const Request402 request = request_of(word);
+  const model::Request402 request = model::request_of(word);
   if (core.motion.pass(request) == Motion::Pass::refused) return Plan::refuse(Errc::state_unsuitable);
   if (core.is_virtual()) return plan_virtual_controlword(core, word);
   Plan plan;
   const AxisFacts facts = core.facts();
   const std::uint16_t before = core.controlword();
-  const bool enables = request == Request402::enable_operation;
-  const bool halts = facts.enabled() && rising(before, word, controlword::kHalt);
+  const bool enables = request == model::Request402::enable_operation;
+  const bool halts = facts.enabled() && model::rising(before, word, model::controlword::kHalt);
   const bool moves = facts.mode == 1 && word_starts(core, word, facts.enabled());
-  const bool homes = facts.enabled() && facts.mode == 6 && rising(before, word, controlword::kStart);
+  const bool homes = facts.enabled() && facts.mode == 6 && model::rising(before, word, model::controlword::kStart);
 
   // Whether a drive takes bit 4 of the word that enables it for a start no sheet says.
-  const bool may_move = !moves && facts.mode == 1 && enables && (word & controlword::kStart) != 0;
-  if (may_move && !facts.enabled() && judge_move(core, (word & controlword::kRelative) != 0) == Errc::bad_value)
+  const bool may_move = !moves && facts.mode == 1 && enables && (word & model::controlword::kStart) != 0;
+  if (may_move && !facts.enabled() && judge_move(core, (word & model::controlword::kRelative) != 0) == Errc::bad_value)
     return Plan::refuse(Errc::bad_value);
 
-  const bool halted = (word & controlword::kHalt) != 0;
+  const bool halted = (word & model::controlword::kHalt) != 0;
   const bool runs = enables && !halted && is_continuous(facts);
 
-  if (rising(word, before, controlword::kHalt)) {
+  if (model::rising(word, before, model::controlword::kHalt)) {
     add_end_of_halt(core, facts.mode, plan);  // bit 8 falls: nothing resumes
   } else if (enables && (runs || !facts.enabled())) {
     // What survives: velocity and torque that nobody has written anew since the last stop, fault or disable are made 0.
@@ -78,14 +79,14 @@ Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_fol
 
   plan.add(Action::write(core.model.controlword, word));
   plan.add(Action::at(Mark::controlword_passed));
-  if (rising(before, word, controlword::kFaultReset))
+  if (model::rising(before, word, model::controlword::kFaultReset))
     plan.add(Action::at(Mark::values_invalidated, core.model.controlword));
   if (halts) plan.add(Action::at(Mark::halted));
   if (moves) plan.add(Action::at(Mark::start_discrete));
   if (homes) plan.add(Action::at(Mark::start_homing));
   if (runs) plan.add(Action::run_raw(!facts.enabled()));
   // A command that finds the axis as enabled as before would be told done, and the axis is disabled.
-  const bool disables = !enables && request != Request402::other && facts.enabled();
+  const bool disables = !enables && request != model::Request402::other && facts.enabled();
   if (disables && command_follows) plan.add(Action::wait(torque_off(core), kStopLimit));
   // And one that finds it as disabled as before would take the torque away once more.
   if (enables && !facts.enabled() && command_follows) plan.add(Action::wait(torque_on(core), kEnableShows, true));

@@ -13,21 +13,21 @@ constexpr Duration kCounterLimit = std::chrono::milliseconds(500);
 
 // Read back: the counter itself says so.
 bool add_wait_for_counter(const AxisCore& core, Plan& plan) {
-  const Binding* actual = core.model.binding(Quantity::position_actual);
-  if (actual == nullptr || actual->object == kNoObject) return true;
+  const model::Binding* actual = core.model.binding(Quantity::position_actual);
+  if (actual == nullptr || actual->object == model::kNoObject) return true;
   const auto raw = actual->to_raw(core.set_position_value, core.object(actual->object));
   if (!raw) return false;
-  Condition there;
+  model::Condition there;
   there.object = actual->object;
-  there.test = Condition::Test::in;
+  there.test = model::Condition::Test::in;
   constexpr std::int64_t kHunting = 5;  // a standing servo hunts a few counts around its set-point
   for (std::int64_t d = -kHunting; d <= kHunting; ++d) there.values.push_back(*raw + d);
   plan.add(Action::wait(there, kCounterLimit));
   return true;
 }
 
-bool writes_at(const AxisCore& core, const Plan& plan, ObjectId object) {
-  return object != kNoObject && std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
+bool writes_at(const AxisCore& core, const Plan& plan, model::ObjectId object) {
+  return object != model::kNoObject && std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
            return a.kind == Action::Kind::write && same_place(core, a.object, object);
          });
 }
@@ -76,7 +76,7 @@ Plan plan_set_position(const AxisCore& core, int mode_before) {
   if (!add_wait_for_counter(core, plan)) return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(Mark::values_invalidated));
   for (const Borrowed& b : borrowed) {
-    const Binding* binding = core.model.binding(b.quantity);
+    const model::Binding* binding = core.model.binding(b.quantity);
     if (binding == nullptr || !b.before || *b.before == b.during) continue;
     // Unconditionally: what is cached now says nothing about what is cached then.
     if (const auto raw = binding->to_raw(*b.before, core.object(binding->object)))

@@ -10,15 +10,15 @@ namespace {
 // How long a drive may take to show the mode it was given. No sheet says; two slow poll periods are ample.
 constexpr Duration kModeLimit = std::chrono::milliseconds(500);
 
-Condition equals(ObjectId object, std::int64_t number) {
-  Condition c;
+model::Condition equals(model::ObjectId object, std::int64_t number) {
+  model::Condition c;
   c.object = object;
   c.values = {number};
   return c;
 }
 
-ObjectId mode_shown_by(const AxisCore& core) {
-  return core.model.mode_display != kNoObject ? core.model.mode_display : core.model.mode;
+model::ObjectId mode_shown_by(const AxisCore& core) {
+  return core.model.mode_display != model::kNoObject ? core.model.mode_display : core.model.mode;
 }
 
 const std::int64_t* raw_mode(const AxisCore& core, std::int16_t mode) {
@@ -80,14 +80,14 @@ Range position_range(const AxisCore& core, const WriteBatch& batch) {
 }
 
 bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan) {
-  const Binding* binding = core.model.binding(quantity);
-  if (binding == nullptr || binding->object == kNoObject || !binding->writable) return false;
-  const ObjectDef& object = core.object(binding->object);
+  const model::Binding* binding = core.model.binding(quantity);
+  if (binding == nullptr || binding->object == model::kNoObject || !binding->writable) return false;
+  const model::ObjectDef& object = core.object(binding->object);
   const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, object);
   if (!raw) return false;
   const ObjectState& state = core.store[binding->object];
   if (state.cached && state.number == *raw && !object.trigger && !object.composed) return true;
-  if (object.nvm != Nvm::no && !state.cached && object.readable && !object.trigger && !state.refused) {
+  if (object.nvm != model::Nvm::no && !state.cached && object.readable && !object.trigger && !state.refused) {
     // Where a write wears out the drive's memory, it is looked at first.
     plan.add(Action::read(binding->object));
     plan.add(Action::at(Mark::look_again));
@@ -102,10 +102,10 @@ namespace {
 // Unconditionally, although it may be cached: a panel or a PC at the drive's other port can have changed it since it
 // was read, and this is what keeps an enable from moving. Where a write wears out the drive's memory, it is looked at
 // first.
-void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Plan& plan, bool& look_again) {
+void add_running_target(const AxisCore& core, model::ObjectId id, std::int64_t raw, Plan& plan, bool& look_again) {
   constexpr Duration kFresh = std::chrono::milliseconds(500);
   const ObjectState& state = core.store[id];
-  if (state.refused || core.object(id).nvm == Nvm::no || core.object(id).trigger) {
+  if (state.refused || core.object(id).nvm == model::Nvm::no || core.object(id).trigger) {
     Action write = Action::write(id, raw);
     // One refused read proves nothing. What the drive does not have holds nothing, but that its answer has to say.
     write.optional = state.refused;
@@ -120,8 +120,9 @@ void add_running_target(const AxisCore& core, ObjectId id, std::int64_t raw, Pla
 
 }  // namespace
 
-bool moves_by_write(const AxisCore& core, ObjectId object) {
-  return core.is_virtual() && object != kNoObject && (core.object(object).trigger || core.object(object).composed);
+bool moves_by_write(const AxisCore& core, model::ObjectId object) {
+  return core.is_virtual() && object != model::kNoObject &&
+         (core.object(object).trigger || core.object(object).composed);
 }
 
 std::optional<Quantity> setpoint_of_mode(int mode) {
@@ -142,12 +143,12 @@ bool is_target(Quantity quantity) {
          quantity == Quantity::target_torque;
 }
 
-bool same_place(const AxisCore& core, ObjectId a, ObjectId b) {
+bool same_place(const AxisCore& core, model::ObjectId a, model::ObjectId b) {
   const auto& aliases = core.object(a).aliases;
   return a == b || std::find(aliases.begin(), aliases.end(), b) != aliases.end();
 }
 
-bool writes(const Plan& plan, ObjectId object) {
+bool writes(const Plan& plan, model::ObjectId object) {
   return std::any_of(plan.actions.begin(), plan.actions.end(),
                      [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
 }
@@ -157,12 +158,12 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. They go first: a drive may take two
   // of them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
   const auto& bindings = core.model.bindings;
-  for (const ObjectId id : core.model.zero_before_enable)
+  for (const model::ObjectId id : core.model.zero_before_enable)
     if (std::none_of(bindings.begin(), bindings.end(),
-                     [&](const Binding& b) { return b.writable && same_place(core, id, b.object); }))
+                     [&](const model::Binding& b) { return b.writable && same_place(core, id, b.object); }))
       add_running_target(core, id, 0, plan, look_again);
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
-    const Binding* binding = core.model.binding(q);
+    const model::Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
     Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
     if (!wanted.fresh && core.facts().enabled()) wanted = {};
@@ -173,8 +174,8 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
 }
 
 void add_target_here(const AxisCore& core, Plan& plan) {
-  const Binding* target = core.model.binding(Quantity::target_position);
-  const Binding* actual = core.model.binding(Quantity::position_actual);
+  const model::Binding* target = core.model.binding(Quantity::target_position);
+  const model::Binding* actual = core.model.binding(Quantity::position_actual);
   // The target of a virtual axis starts nothing: only its command does.
   if (core.is_virtual()) return;
   if (target == nullptr || actual == nullptr || !target->writable || core.object(target->object).trigger) return;
@@ -182,20 +183,20 @@ void add_target_here(const AxisCore& core, Plan& plan) {
   plan.add(Action::copy(actual->object, target->object));
 }
 
-void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan) {
+void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& plan) {
   const auto quantity = setpoint_of_mode(core.mode_in_force());
-  const Binding* target = quantity ? core.model.binding(*quantity) : nullptr;
+  const model::Binding* target = quantity ? core.model.binding(*quantity) : nullptr;
   if (target == nullptr || !target->writable || !moves_by_write(core, target->object)) return;
-  const auto by_step = [&](const Step& step) {
-    return step.verb == Step::Verb::write && step.object == target->object;
+  const auto by_step = [&](const model::Step& step) {
+    return step.verb == model::Step::Verb::write && step.object == target->object;
   };
   if (steps != nullptr && std::any_of(steps->begin(), steps->end(), by_step)) return;
   if (quantity != Quantity::target_position) {
     plan.add(Action::write(target->object, 0));
     return;
   }
-  const Binding* actual = core.model.binding(Quantity::position_actual);
-  if (actual == nullptr || actual->object == kNoObject) return;
+  const model::Binding* actual = core.model.binding(Quantity::position_actual);
+  if (actual == nullptr || actual->object == model::kNoObject) return;
   plan.add(Action::read(actual->object));
   plan.add(Action::copy(actual->object, target->object));
 }
@@ -215,8 +216,8 @@ bool is_speed(Quantity quantity) {
 }
 
 void note_told(AxisCore& core, const Setpoint& sp) {
-  const Binding* binding = core.model.binding(sp.quantity);
-  if (!is_speed(sp.quantity) || binding == nullptr || binding->object == kNoObject) return;
+  const model::Binding* binding = core.model.binding(sp.quantity);
+  if (!is_speed(sp.quantity) || binding == nullptr || binding->object == model::kNoObject) return;
   const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
   if (raw) core.accepted_speeds.insert_or_assign(binding->object, AxisCore::AcceptedSpeed{sp.quantity, sp.value, *raw});
 }
@@ -225,7 +226,7 @@ void note_told(AxisCore& core, const Setpoint& sp) {
 
 void forget_accepted_speeds(AxisCore& core, const WriteBatch& batch) {
   for (const Setpoint& sp : batch.setpoints)
-    if (const Binding* binding = core.model.binding(sp.quantity)) core.accepted_speeds.erase(binding->object);
+    if (const model::Binding* binding = core.model.binding(sp.quantity)) core.accepted_speeds.erase(binding->object);
 }
 
 void remember_setpoints(AxisCore& core, const WriteBatch& batch) {
@@ -247,7 +248,7 @@ namespace {
 void add_changed_run(const AxisCore& core, const WriteBatch& batch, Plan& plan) {
   const auto& run = core.model.command(Command::run_velocity);
   if (!run || !run->repeat_on_change || !core.facts().enabled() || batch.command == Command::run_velocity) return;
-  const Binding* binding = core.model.binding(Quantity::target_velocity);
+  const model::Binding* binding = core.model.binding(Quantity::target_velocity);
   if (!writes(plan, binding->object)) return;
   // Nobody has seen it for a moment: it may have ended, by a restart perhaps, and would be started anew.
   if (!core.store[core.model.statusword].cached) {
@@ -263,7 +264,7 @@ void add_changed_run(const AxisCore& core, const WriteBatch& batch, Plan& plan) 
 // What moves the axis by being written is kept for a start of its own mode, and acts at once only while that runs. The
 // drive is not asked for the number that it holds once more: keep-alive does that (profile key "keepalive").
 bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& facts) {
-  const Binding* binding = core.model.binding(sp.quantity);
+  const model::Binding* binding = core.model.binding(sp.quantity);
   const bool held_back = core.held_back(sp.quantity);
   if (binding == nullptr || !moves_by_write(core, binding->object) || !is_target(sp.quantity))
     return core.motion.target_acts_now(sp.quantity, facts, held_back);
@@ -305,7 +306,7 @@ Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch) {
 
 void add_mode(const AxisCore& core, int mode, Plan& plan) {
   const std::int64_t* raw = raw_mode(core, static_cast<std::int16_t>(mode));
-  if (raw == nullptr || core.model.mode == kNoObject) return;
+  if (raw == nullptr || core.model.mode == model::kNoObject) return;
   plan.add(Action::write(core.model.mode, *raw));
   plan.add(Action::at(Mark::values_invalidated, core.model.mode));
   plan.add(Action::wait(equals(mode_shown_by(core), *raw), kModeLimit));
@@ -316,8 +317,8 @@ Plan plan_mode(const AxisCore& core, std::int16_t mode) {
   if (core.is_virtual()) return plan_virtual_mode(core, mode, false);
   Plan plan;
   const std::int64_t* raw = raw_mode(core, mode);
-  if (raw == nullptr || core.model.mode == kNoObject) return Plan::refuse(Errc::bad_value);
-  const ObjectId display = mode_shown_by(core);
+  if (raw == nullptr || core.model.mode == model::kNoObject) return Plan::refuse(Errc::bad_value);
+  const model::ObjectId display = mode_shown_by(core);
   const ObjectState& asked = core.store[core.model.mode];
   const ObjectState& shown = core.store[display];
   if (asked.cached && asked.number == *raw && shown.cached && shown.number == *raw) return plan;

@@ -39,7 +39,7 @@ bool is_speed_of_motion(Quantity quantity) {
 void add_speeds(const AxisCore& core, int mode, Plan& plan) {
   bool look_again = false;
   for (const Quantity each : speeds_of(mode)) {
-    const Binding* binding = core.model.binding(each);
+    const model::Binding* binding = core.model.binding(each);
     if (binding == nullptr || !core.model.takes(each)) continue;
     const ObjectState& state = core.store[binding->object];
     const auto told = core.accepted_speeds.find(binding->object);

@@ -13,27 +13,27 @@ constexpr std::uint16_t kSwitchedOn = 0x0007, kEnabled = 0x000F;
 // How long a stop may take to be seen in the motor's speed. Then it is owed, and sent again after a pause.
 constexpr Duration kSlowerLimit = std::chrono::seconds(2);
 
-Condition not_enabled(const AxisCore& core) {
-  Condition c;
+model::Condition not_enabled(const AxisCore& core) {
+  model::Condition c;
   c.object = core.model.statusword;
   c.mask = 0x6F;
-  c.test = Condition::Test::not_equals;
+  c.test = model::Condition::Test::not_equals;
   c.values = {0x27};  // operation enabled
   return c;
 }
 
 // Kinco's halt word is 0x010F: its low bits ask for "enabled", also of a drive that is not.
-bool hold_an_enabling_word(const AxisCore& core, const Steps& steps) {
-  return std::any_of(steps.begin(), steps.end(), [&](const Step& s) {
-    return s.verb == Step::Verb::write && s.source == Step::Source::literal &&
+bool hold_an_enabling_word(const AxisCore& core, const model::Steps& steps) {
+  return std::any_of(steps.begin(), steps.end(), [&](const model::Step& s) {
+    return s.verb == model::Step::Verb::write && s.source == model::Step::Source::literal &&
            is_enabling_word(core, s.object, s.literal);
   });
 }
 
 /// The controlword without which this drive heeds no other one after a restart (setup of its profile; JD 2.3).
 std::optional<std::int64_t> first_controlword(const AxisCore& core) {
-  for (const ObjectWrite& setup : core.drive.setup)
-    if (setup.object == core.model.controlword && setup.object != kNoObject) return setup.raw;
+  for (const model::ObjectWrite& setup : core.drive.setup)
+    if (setup.object == core.model.controlword && setup.object != model::kNoObject) return setup.raw;
   return std::nullopt;
 }
 
@@ -58,7 +58,7 @@ Plan quick_stop(const AxisCore& core) {
   // A gate that is the gateway's own is closed when the motor has obeyed: until then it is owed what it would tell.
   const bool own_gate = core.is_virtual() && core.model.virtual_axis->gate_only;
   if (own_gate) add_motor_obeys(core, plan);
-  add_virtual_controlword(core, controlword::kEnableVoltage, plan);
+  add_virtual_controlword(core, model::controlword::kEnableVoltage, plan);
   plan.add(Action::wait(not_enabled(core), kStopLimit));
   if (!own_gate) add_motor_obeys(core, plan);
   return plan;
@@ -78,14 +78,14 @@ Plan disable(const AxisCore& core) {
 // stops without that risk is the quick stop; and an axis without torque needs no halt at all.
 Plan halt(const AxisCore& core) {
   if (halt_is_quick_stop(core)) return quick_stop(core);
-  const Steps* steps = steps_of(core, Command::halt);
+  const model::Steps* steps = steps_of(core, Command::halt);
   Plan plan;
   if (hold_an_enabling_word(core, *steps)) {
     const ObjectState& status = core.store[core.model.statusword];
     const ObjectState& word = core.store[core.model.controlword];
     if (core.turn.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
     if (!status.cached) return look_at_state(core);
-    const bool asked_for = enables(core.controlword());
+    const bool asked_for = model::enables(core.controlword());
     if (!asked_for || !core.facts().enabled()) {
       // An enable may have gone out since that was read.
       if (asked_for && !core.state_is_of_now()) return look_at_state(core);
@@ -95,7 +95,7 @@ Plan halt(const AxisCore& core) {
     }
   }
   add_steps(core, *steps, plan);
-  if (core.facts().enabled()) add_virtual_controlword(core, controlword::kHalt | kEnabled, plan);
+  if (core.facts().enabled()) add_virtual_controlword(core, model::controlword::kHalt | kEnabled, plan);
   add_motor_obeys(core, plan);  // no state tells of it
   return plan;
 }
@@ -108,16 +108,18 @@ Plan by_command(const AxisCore& core, Command command) {
 Plan by_controlword(const AxisCore& core, std::uint16_t word) {
   Plan plan;
   if (core.is_virtual()) {
-    plan = by_command(core, request_of(word) == Request402::quick_stop ? Command::quick_stop : Command::disable);
+    plan = by_command(
+        core, model::request_of(word) == model::Request402::quick_stop ? Command::quick_stop : Command::disable);
     if (plan.refused()) return plan;
   }
   plan.add(Action::write(core.model.controlword, word));
   plan.add(Action::at(Mark::controlword_passed));
-  const Request402 request = request_of(word);
+  const model::Request402 request = model::request_of(word);
   // A drive that stays in quick stop active (605Ah 5 to 7) leaves it by neither 6 nor 7 (CiA 402-2, figure 2): that it
   // is not enabled is all that they can be seen by.
-  const bool stays = core.facts().state == State402::quick_stop_active && request != Request402::disable_voltage;
-  const bool torque_may_stay = request == Request402::quick_stop || stays;
+  const bool stays =
+      core.facts().state == model::State402::quick_stop_active && request != model::Request402::disable_voltage;
+  const bool torque_may_stay = request == model::Request402::quick_stop || stays;
   plan.add(Action::wait(torque_may_stay ? not_enabled(core) : torque_off(core), kStopLimit));
   if (torque_may_stay && !core.is_virtual()) add_motor_obeys(core, plan);
   return plan;
@@ -132,19 +134,20 @@ Plan look_at_state(const AxisCore& core) {
   return plan;
 }
 
-bool is_enabling_word(const AxisCore& core, ObjectId object, std::int64_t number) {
-  return object == core.model.controlword && enables(number);
+bool is_enabling_word(const AxisCore& core, model::ObjectId object, std::int64_t number) {
+  return object == core.model.controlword && model::enables(number);
 }
 
-Condition torque_off(const AxisCore& core) {
-  Condition c = not_enabled(core);
-  c.test = Condition::Test::not_in;
+model::Condition torque_off(const AxisCore& core) {
+  model::Condition c = not_enabled(core);
+  c.test = model::Condition::Test::not_in;
   c.values = {0x27, 0x07};
   return c;
 }
 
 Plan plan_stop(const AxisCore& core, const WriteBatch& batch, bool unheeded) {
-  if (const auto word = first_controlword(core); unheeded && word && !enables(*word)) return first_word(core, *word);
+  if (const auto word = first_controlword(core); unheeded && word && !model::enables(*word))
+    return first_word(core, *word);
   const bool commanded = is_stop(batch.command);
   if (!stops_by_word(batch)) return by_command(core, batch.command);
   Plan plan = by_controlword(core, *batch.controlword);
@@ -157,16 +160,16 @@ bool halt_is_quick_stop(const AxisCore& core) {
   const auto& halt_def = core.model.command(Command::halt);
   if (!halt_def) return true;
   const int mode = core.mode_in_force();
-  for (const CommandDef::Variant& variant : halt_def->variants)
+  for (const model::CommandDef::Variant& variant : halt_def->variants)
     for (const std::int16_t m : variant.modes)
       if (m == mode) return false;
   return halt_def->quick_stop_otherwise || halt_def->steps.empty();
 }
 
 bool halts_by_position(const AxisCore& core) {
-  const Steps* steps = halt_is_quick_stop(core) ? nullptr : steps_of(core, Command::halt);
-  return steps != nullptr && std::any_of(steps->begin(), steps->end(), [](const Step& step) {
-           return step.source == Step::Source::quantity && step.quantity == Quantity::position_actual;
+  const model::Steps* steps = halt_is_quick_stop(core) ? nullptr : steps_of(core, Command::halt);
+  return steps != nullptr && std::any_of(steps->begin(), steps->end(), [](const model::Step& step) {
+           return step.source == model::Step::Source::quantity && step.quantity == Quantity::position_actual;
          });
 }
 
@@ -177,11 +180,11 @@ bool halts_by_word(const AxisCore& core) {
 
 void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan) {
   const std::uint16_t word = core.controlword();
-  if ((word & controlword::kHalt) == 0) return;
+  if ((word & model::controlword::kHalt) == 0) return;
   constexpr std::uint16_t kShutdown = 0x0006, kTake = 0x0030;  // new set-point, change at once
   if (core.is_virtual()) {
     // Bit 8 falling does nothing: what was halted is over.
-    plan.add(Action::write(core.model.controlword, word & static_cast<std::uint16_t>(~controlword::kHalt)));
+    plan.add(Action::write(core.model.controlword, word & static_cast<std::uint16_t>(~model::controlword::kHalt)));
     return;
   }
   if (!core.facts().enabled()) {
@@ -189,7 +192,7 @@ void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan) {
     return;
   }
   add_running_targets(core, false, plan);
-  const Binding* target = core.model.binding(Quantity::target_position);
+  const model::Binding* target = core.model.binding(Quantity::target_position);
   const bool takes_target =
       !core.is_continuous(core.mode_in_force()) && target != nullptr && !core.object(target->object).trigger;
   const bool leaves_mode = takes_target && core.mode_in_force() != 1;
@@ -197,9 +200,9 @@ void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan) {
     // A halted homing would go on, and so would a move whose target was merely overwritten: the drive must have taken
     // the new set-point, the present position, before bit 8 falls.
     if (leaves_mode) add_mode(core, 1, plan);
-    plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled));
+    plan.add(Action::write(core.model.controlword, model::controlword::kHalt | kEnabled));
     add_target_here(core, plan);
-    plan.add(Action::write(core.model.controlword, controlword::kHalt | kEnabled | kTake));
+    plan.add(Action::write(core.model.controlword, model::controlword::kHalt | kEnabled | kTake));
   }
   plan.add(Action::write(core.model.controlword, kEnabled));
   if (leaves_mode && mode_after != 1) add_mode(core, mode_after, plan);

@@ -15,7 +15,7 @@ Plan plan_close(const AxisCore& core) {
 }
 
 // The steps before it were gone, and nothing stands against it: the word enables.
-bool opens(const AxisFacts& facts) { return !facts.faulted() && facts.state != State402::switch_on_disabled; }
+bool opens(const AxisFacts& facts) { return !facts.faulted() && facts.state != model::State402::switch_on_disabled; }
 
 Plan plan_open(const AxisCore& core) {
   if (core.alarm(AxisAlarm::local_control)) return Plan::refuse(Errc::state_unsuitable);
@@ -32,7 +32,7 @@ Plan plan_open(const AxisCore& core) {
 // Bit 4 rising, by the mode in force.
 std::optional<Command> start_of(const AxisCore& core, std::uint16_t word) {
   const int mode = core.mode_in_force();
-  if (mode == 1) return (word & controlword::kRelative) != 0 ? Command::move_relative : Command::move_absolute;
+  if (mode == 1) return (word & model::controlword::kRelative) != 0 ? Command::move_relative : Command::move_absolute;
   return mode == 6 ? std::optional(Command::home) : std::nullopt;
 }
 
@@ -79,25 +79,25 @@ Plan plan_virtual_controlword(const AxisCore& core, std::uint16_t word) {
   Plan plan;
   const AxisFacts facts = core.facts();
   const std::uint16_t before = core.controlword();
-  const Request402 request = request_of(word);
-  const bool enables = request == Request402::enable_operation;
-  const bool halts = facts.enabled() && rising(before, word, controlword::kHalt);
+  const model::Request402 request = model::request_of(word);
+  const bool enables = request == model::Request402::enable_operation;
+  const bool halts = facts.enabled() && model::rising(before, word, model::controlword::kHalt);
 
   // What is "so already" is not sent: by a state that was read after the last sending alone.
-  const bool so_already =
-      enables ? facts.enabled() && !word_starts(core, word, true) : request != Request402::other && !facts.enabled();
+  const bool so_already = enables ? facts.enabled() && !word_starts(core, word, true)
+                                  : request != model::Request402::other && !facts.enabled();
   if (so_already && !core.state_is_of_now()) return look_at_state(core);
-  if (rising(before, word, controlword::kFaultReset) && facts.faulted() &&
+  if (model::rising(before, word, model::controlword::kFaultReset) && facts.faulted() &&
       !append(plan, plan_command(core, Command::fault_reset, 0)))
     return plan;
-  if (!enables && request != Request402::other && !append(plan, plan_close(core))) return plan;
+  if (!enables && request != model::Request402::other && !append(plan, plan_close(core))) return plan;
   if (enables && !facts.enabled() && !append(plan, plan_open(core))) return plan;
   if (halts && !add_command_steps(core, Command::halt, plan)) return plan;
   plan.add(Action::write(core.model.controlword, word));
   plan.add(Action::at(Mark::controlword_passed));
   if (halts) plan.add(Action::at(Mark::halted));
 
-  const bool halted = (word & controlword::kHalt) != 0;
+  const bool halted = (word & model::controlword::kHalt) != 0;
   if (!enables || halted) return plan;
   if (facts.enabled() && word_starts(core, word, true)) {
     if (const auto command = start_of(core, word)) {

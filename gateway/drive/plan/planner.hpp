@@ -61,7 +61,7 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 /// (CommandSequence).
 inline constexpr Duration kStopLimit = std::chrono::seconds(5);
 /// Disabled: neither operation enabled nor still in quick stop.
-[[nodiscard]] Condition torque_off(const AxisCore& core);
+[[nodiscard]] model::Condition torque_off(const AxisCore& core);
 /// Halt on this drive in the mode in force is carried out by quick_stop.
 [[nodiscard]] bool halt_is_quick_stop(const AxisCore& core);
 /// In the mode in force the axis halts by bit 8 of the controlword: its profile's halt is that bit, or it is virtual.
@@ -80,7 +80,7 @@ void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan);
 void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Plan& plan);
 /// Where a set-point moves the axis by being written: what the set-point of the mode in force must be before torque
 /// comes on, 0 or the present position; nothing where `steps` write it themselves.
-void add_quiet_setpoint(const AxisCore& core, const Steps* steps, Plan& plan);
+void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& plan);
 
 // --- Building blocks -----------------------------------------------------------------------------------------------
 
@@ -89,7 +89,7 @@ bool append(Plan& plan, Plan more);
 /// The state is read, and all is planned again by it.
 [[nodiscard]] Plan look_at_state(const AxisCore& core);
 /// Appends the profile's steps.
-void add_steps(const AxisCore& core, const Steps& steps, Plan& plan);
+void add_steps(const AxisCore& core, const model::Steps& steps, Plan& plan);
 /// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
 bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
 /// Writes the mode, whatever is in force, and waits until the drive shows it; nothing where it is none of the drive's.
@@ -109,19 +109,19 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);
 /// On this drive the write of this set-point is what moves the axis: it goes with a start, and while that runs.
-[[nodiscard]] bool moves_by_write(const AxisCore& core, ObjectId object);
+[[nodiscard]] bool moves_by_write(const AxisCore& core, model::ObjectId object);
 /// The set-point of this mode; none where it has none.
 [[nodiscard]] std::optional<Quantity> setpoint_of_mode(int mode);
 /// Position, velocity or torque: what a start goes by.
 [[nodiscard]] bool is_target(Quantity quantity);
 /// One object, or two at one place in the drive.
-[[nodiscard]] bool same_place(const AxisCore& core, ObjectId a, ObjectId b);
+[[nodiscard]] bool same_place(const AxisCore& core, model::ObjectId a, model::ObjectId b);
 /// Written to this object, the number is a controlword that takes the axis to operation enabled, or keeps it there.
-[[nodiscard]] bool is_enabling_word(const AxisCore& core, ObjectId object, std::int64_t number);
+[[nodiscard]] bool is_enabling_word(const AxisCore& core, model::ObjectId object, std::int64_t number);
 /// The plan writes this object.
-[[nodiscard]] bool writes(const Plan& plan, ObjectId object);
+[[nodiscard]] bool writes(const Plan& plan, model::ObjectId object);
 /// The steps of a command in the mode in force, or null where the drive has none.
-[[nodiscard]] const Steps* steps_of(const AxisCore& core, Command command);
+[[nodiscard]] const model::Steps* steps_of(const AxisCore& core, Command command);
 /// In the mode in force a halt is a move back to where the axis was when it was asked: it gets faster again on the way.
 [[nodiscard]] bool halts_by_position(const AxisCore& core);
 

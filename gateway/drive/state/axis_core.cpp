@@ -9,16 +9,16 @@ namespace {
 
 constexpr std::int64_t kNoMode = 0;  // which mode is in force nobody knows
 
-bool holds(const AxisCore& core, const std::optional<Condition>& condition) {
+bool holds(const AxisCore& core, const std::optional<model::Condition>& condition) {
   if (!condition) return false;
   const ObjectState& s = core.store[condition->object];
   return s.known && condition->holds(core.object(condition->object), static_cast<std::uint32_t>(s.number));
 }
 
 // A composed quantity: bit fields of one or more objects side by side.
-std::optional<std::int64_t> composed(const AxisCore& core, const Binding& binding) {
+std::optional<std::int64_t> composed(const AxisCore& core, const model::Binding& binding) {
   std::uint32_t out = 0;
-  for (const BitField& field : binding.bits) {
+  for (const model::BitField& field : binding.bits) {
     const ObjectState& s = core.store[field.object];
     if (s.refused) continue;  // what this drive does not have reads 0
     if (!s.known) return std::nullopt;
@@ -33,34 +33,34 @@ std::optional<std::int64_t> composed(const AxisCore& core, const Binding& bindin
 }  // namespace
 
 std::optional<std::int64_t> AxisCore::value(Quantity quantity) const {
-  const Binding* binding = model.binding(quantity);
+  const model::Binding* binding = model.binding(quantity);
   if (binding == nullptr) return std::nullopt;
   if (!binding->bits.empty()) return composed(*this, *binding);
-  if (binding->object == kNoObject || !store[binding->object].known) return std::nullopt;
+  if (binding->object == model::kNoObject || !store[binding->object].known) return std::nullopt;
   return binding->to_register(store[binding->object].number);
 }
 
-ObjectId AxisCore::object_of(Quantity quantity) const {
-  const Binding* binding = model.binding(quantity);
-  const bool there = binding != nullptr && binding->object != kNoObject && !store[binding->object].refused;
-  return there ? binding->object : kNoObject;
+model::ObjectId AxisCore::object_of(Quantity quantity) const {
+  const model::Binding* binding = model.binding(quantity);
+  const bool there = binding != nullptr && binding->object != model::kNoObject && !store[binding->object].refused;
+  return there ? binding->object : model::kNoObject;
 }
 
-ObjectId AxisCore::motion_object() const {
+model::ObjectId AxisCore::motion_object() const {
   if (!model.moving) return object_of(Quantity::velocity_actual);
-  return store[model.moving->object].refused ? kNoObject : model.moving->object;
+  return store[model.moving->object].refused ? model::kNoObject : model.moving->object;
 }
 
 int AxisCore::mode_in_force() const {
-  const ObjectId id = model.mode_display != kNoObject ? model.mode_display : model.mode;
-  if (id == kNoObject || !store[id].known) return 0;
+  const model::ObjectId id = model.mode_display != model::kNoObject ? model.mode_display : model.mode;
+  if (id == model::kNoObject || !store[id].known) return 0;
   for (const auto& [unified, raw] : model.modes)
     if (raw == store[id].number) return unified;
   return static_cast<int>(store[id].number);
 }
 
 std::uint16_t AxisCore::controlword() const {
-  if (model.controlword == kNoObject) return 0;
+  if (model.controlword == model::kNoObject) return 0;
   const ObjectState& s = store[model.controlword];
   return s.known ? static_cast<std::uint16_t>(s.number) : 0;
 }
@@ -71,13 +71,13 @@ AxisFacts AxisCore::facts() const {
   facts.reachable = reachable();
   const ObjectState& status = store[model.statusword];
   const auto word = static_cast<std::uint16_t>(status.known ? status.number : 0);
-  facts.state = status.known ? state_of(word) : State402::not_ready_to_switch_on;
+  facts.state = status.known ? model::state_of(word) : model::State402::not_ready_to_switch_on;
   facts.statusword_exchange = status.exchange;
-  if (const ObjectId id = object_of(Quantity::position_actual); id != kNoObject)
+  if (const model::ObjectId id = object_of(Quantity::position_actual); id != model::kNoObject)
     facts.position_exchange = store[id].exchange;
-  facts.target_reached = (word & statusword::kTargetReached) != 0;
-  const ObjectId word_object = model.controlword;
-  facts.commanded = word_object == kNoObject || !store[word_object].known || enables(controlword());
+  facts.target_reached = (word & model::statusword::kTargetReached) != 0;
+  const model::ObjectId word_object = model.controlword;
+  facts.commanded = word_object == model::kNoObject || !store[word_object].known || model::enables(controlword());
   facts.mode = mode_in_force();
   facts.own_velocity_mode = model.is_own_velocity_mode(facts.mode);
   facts.acknowledges = model.cia402.setpoint_acknowledge;
@@ -94,19 +94,21 @@ AxisFacts AxisCore::facts() const {
   // Found turning in a mode that nobody can tell, it may follow a velocity: it is stopped and led as if it did.
   const bool tells_no_mode = is_virtual() && model.virtual_axis->gate_only;
   facts.own_velocity_mode = facts.own_velocity_mode || (tells_no_mode && facts.moving && motion.found_at_start());
-  if (const ObjectId id = motion_object(); id != kNoObject && !store[id].emulated) facts.moving_at = store[id].sent_at;
+  if (const model::ObjectId id = motion_object(); id != model::kNoObject && !store[id].emulated)
+    facts.moving_at = store[id].sent_at;
   facts.follows = follows(facts);
   return facts;
 }
 
-bool AxisCore::is_continuous(int mode) const { return drive::is_continuous(mode) || model.is_own_velocity_mode(mode); }
+bool AxisCore::is_continuous(int mode) const { return model::is_continuous(mode) || model.is_own_velocity_mode(mode); }
 
 // A CiA 402 drive tells its set-point, and turns by it alone; of another the motor itself has to tell.
 bool AxisCore::follows(const AxisFacts& facts) const {
   const std::optional<Quantity> followed = followed_target(facts);
-  if (!followed || (controlword() & controlword::kHalt) != 0) return false;
-  const Binding* target = model.binding(*followed);
-  const bool tells = !is_virtual() && target != nullptr && target->object != kNoObject && store[target->object].known;
+  if (!followed || (controlword() & model::controlword::kHalt) != 0) return false;
+  const model::Binding* target = model.binding(*followed);
+  const bool tells =
+      !is_virtual() && target != nullptr && target->object != model::kNoObject && store[target->object].known;
   return tells ? store[target->object].number != 0 : facts.moving;
 }
 
@@ -116,20 +118,20 @@ std::optional<VirtualAxis::Seen> AxisCore::seen() const {
   VirtualAxis::Seen out;
   out.at = turn.now;
   out.exchange = UINT64_MAX;
-  for (const ObjectId id : model.state_sources) {
+  for (const model::ObjectId id : model.state_sources) {
     if (store[id].refused) continue;
     if (!store[id].known) return std::nullopt;
     out.exchange = std::min(out.exchange, store[id].exchange);
   }
-  const VirtualProperties& by = *model.virtual_axis;
+  const model::VirtualProperties& by = *model.virtual_axis;
   out.enabled = holds(*this, by.enabled);
   out.fault = holds(*this, by.fault);
   out.limit = holds(*this, by.limit);
   out.moving = facts().moving;
   out.standing = by.reached ? holds(*this, by.reached) : !out.moving;
   out.homed_at = !by.homed_at || holds(*this, by.homed_at);
-  if (const Binding* position = model.binding(Quantity::position_actual);
-      position != nullptr && position->object != kNoObject && store[position->object].known) {
+  if (const model::Binding* position = model.binding(Quantity::position_actual);
+      position != nullptr && position->object != model::kNoObject && store[position->object].known) {
     out.position = store[position->object].number;
     out.position_exchange = store[position->object].exchange;
   }
@@ -156,15 +158,15 @@ void AxisCore::refresh_virtual() {
   if (machine.take_found_enabled()) store.make(model.controlword, kEnabled);
   Instant oldest = kNever;
   bool cached = true;
-  for (const ObjectId id : model.state_sources) {
+  for (const model::ObjectId id : model.state_sources) {
     if (store[id].refused) continue;
     oldest = std::min(oldest, store[id].sent_at);
     cached = cached && store[id].cached;
   }
   store.make(model.statusword, machine.statusword(*newest), cached, oldest, newest->exchange);
   // Without torque no mode is in force, and the next enable says in which it is to be.
-  const auto state = state_of(static_cast<std::uint16_t>(store[model.statusword].number));
-  if (store[model.mode].known && store[model.mode].number == kNoMode && state != State402::operation_enabled)
+  const auto state = model::state_of(static_cast<std::uint16_t>(store[model.statusword].number));
+  if (store[model.mode].known && store[model.mode].number == kNoMode && state != model::State402::operation_enabled)
     begin_mode();
 }
 
@@ -172,7 +174,7 @@ void AxisCore::begin_mode() {
   if (is_virtual()) store.make(model.mode, model.modes.empty() ? kNoMode : model.modes.front().first);
 }
 
-void AxisCore::make(ObjectId id, std::int64_t number) {
+void AxisCore::make(model::ObjectId id, std::int64_t number) {
   store.make(id, number);
   if (id == model.controlword) machine.control(static_cast<std::uint16_t>(number), *model.virtual_axis);
   refresh_virtual();
@@ -183,8 +185,8 @@ void AxisCore::started(MotionKind kind, bool relative, std::optional<std::int64_
   if (ends_at) sent_to = {*ends_at, store.invalidations()};
   if (!is_virtual()) return;
   std::optional<std::int64_t> goal;
-  const Binding* target = model.binding(Quantity::target_position);
-  const Binding* actual = model.binding(Quantity::position_actual);
+  const model::Binding* target = model.binding(Quantity::target_position);
+  const model::Binding* actual = model.binding(Quantity::position_actual);
   if (kind == MotionKind::discrete && target != nullptr && store[target->object].known) {
     goal = store[target->object].number;
     if (relative) goal = *goal + store[actual->object].number;  // read at standstill, just before the start
@@ -193,9 +195,9 @@ void AxisCore::started(MotionKind kind, bool relative, std::optional<std::int64_
   refresh_virtual();
 }
 
-ObjectId AxisCore::to_read(ObjectId id) const {
+model::ObjectId AxisCore::to_read(model::ObjectId id) const {
   if (id != model.statusword || !object(id).emulated) return id;
-  const auto older = [&](ObjectId a, ObjectId b) {
+  const auto older = [&](model::ObjectId a, model::ObjectId b) {
     if (store[a].refused != store[b].refused) return store[b].refused;
     return store[a].exchange < store[b].exchange;
   };
@@ -210,12 +212,12 @@ bool AxisCore::cannot_deenergise() const {
 
 bool AxisCore::shows_torque() const {
   const AxisFacts now = facts();
-  return now.enabled() || (now.reachable && now.state == State402::quick_stop_active) || cannot_deenergise();
+  return now.enabled() || (now.reachable && now.state == model::State402::quick_stop_active) || cannot_deenergise();
 }
 
 bool AxisCore::held_back(Quantity quantity) const {
-  const Binding* binding = model.binding(quantity);
-  if (binding == nullptr || binding->object == kNoObject) return false;
+  const model::Binding* binding = model.binding(quantity);
+  if (binding == nullptr || binding->object == model::kNoObject) return false;
   const bool followed = facts().enabled() && (this->controlword() & model.cia402.follow_bits) != 0;
   return object(binding->object).trigger || followed;
 }
@@ -227,13 +229,14 @@ std::optional<Wanted> AxisCore::target_position() const {
 }
 
 std::optional<std::int64_t> AxisCore::setpoint_position() const {
-  const Binding* target = model.binding(Quantity::target_position);
+  const model::Binding* target = model.binding(Quantity::target_position);
   if (sent_to && motion.arrived() && sent_to->invalidations == store.invalidations() && target != nullptr &&
-      target->object != kNoObject && store[target->object].known &&
+      target->object != model::kNoObject && store[target->object].known &&
       target->to_raw(sent_to->position, object(target->object)) == store[target->object].number)
     return sent_to->position;
-  const ObjectId actual = object_of(Quantity::position_actual);
-  const bool sampled = actual != kNoObject && store[actual].known && store[actual].sent_at >= motion.rests_since();
+  const model::ObjectId actual = object_of(Quantity::position_actual);
+  const bool sampled =
+      actual != model::kNoObject && store[actual].known && store[actual].sent_at >= motion.rests_since();
   return sampled ? value(Quantity::position_actual) : std::nullopt;
 }
 
@@ -241,11 +244,11 @@ Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(
 
 // --- Faults --------------------------------------------------------------------------------------------------------
 
-bool tells_state(const AxisModel& model, ObjectId id) {
+bool tells_state(const model::AxisModel& model, model::ObjectId id) {
   return std::find(model.state_sources.begin(), model.state_sources.end(), id) != model.state_sources.end();
 }
 
-bool AxisCore::names_cause(ObjectId id) const {
+bool AxisCore::names_cause(model::ObjectId id) const {
   return store[id].known && fault.counts(tells_state(id), store[id].exchange);
 }
 
@@ -257,7 +260,7 @@ void AxisCore::watch_fault() {
                         .statusword = to_read(model.statusword),
                         .statusword_exchange = status.exchange,
                         .words = {}};
-  for (const ObjectId id : causes) {
+  for (const model::ObjectId id : causes) {
     const ObjectState& word = store[id];
     seen.words.push_back({.object = id,
                           .refused = word.refused,
@@ -269,10 +272,10 @@ void AxisCore::watch_fault() {
   fault.name(named_code(*this));
 }
 
-const AlarmRow* active_alarm(const AxisCore& core) {
-  for (const AlarmRow& row : core.drive.alarms) {
-    const ObjectId id = core.model.fault_words[row.word];
-    if (id == kNoObject || !core.names_cause(id)) continue;
+const model::AlarmRow* active_alarm(const AxisCore& core) {
+  for (const model::AlarmRow& row : core.drive.alarms) {
+    const model::ObjectId id = core.model.fault_words[row.word];
+    if (id == model::kNoObject || !core.names_cause(id)) continue;
     const auto word = static_cast<std::uint64_t>(core.store[id].number);
     if (row.value ? word == *row.value : ((word >> row.bit) & 1U) != 0) return &row;
   }
@@ -280,9 +283,9 @@ const AlarmRow* active_alarm(const AxisCore& core) {
 }
 
 std::uint16_t named_code(const AxisCore& core) {
-  if (const AlarmRow* row = active_alarm(core)) return row->code;
-  const Binding* listed = core.model.binding(Quantity::error_code);
-  if (listed == nullptr || listed->object == kNoObject || !core.names_cause(listed->object)) return 0;
+  if (const model::AlarmRow* row = active_alarm(core)) return row->code;
+  const model::Binding* listed = core.model.binding(Quantity::error_code);
+  if (listed == nullptr || listed->object == model::kNoObject || !core.names_cause(listed->object)) return 0;
   return static_cast<std::uint16_t>(core.store[listed->object].number);
 }
 

@@ -14,7 +14,7 @@
 namespace axisgate::drive {
 
 /// The axis's statusword is made from this object, or is it.
-[[nodiscard]] bool tells_state(const AxisModel& model, ObjectId id);
+[[nodiscard]] bool tells_state(const model::AxisModel& model, model::ObjectId id);
 
 /// The turn of the loop in which a drive is called: all who decide see the same instant and the same link.
 struct Turn {
@@ -23,8 +23,8 @@ struct Turn {
 };
 
 struct AxisCore {
-  const DriveModel& drive;
-  const AxisModel& model;
+  const model::DriveModel& drive;
+  const model::AxisModel& model;
   ObjectStore& store;
   const Turn& turn;  ///< its drive's
   Motion motion{model.velocity_lag};
@@ -55,7 +55,7 @@ struct AxisCore {
     std::int64_t value = 0;  ///< in register units
     std::int64_t raw = 0;    ///< in the drive's numbers
   };
-  std::map<ObjectId, AcceptedSpeed> accepted_speeds{};
+  std::map<model::ObjectId, AcceptedSpeed> accepted_speeds{};
   NvmBudget nvm{};
 
   /// link_state online or suspect.
@@ -69,23 +69,23 @@ struct AxisCore {
   /// Virtual axes: the mode in force is the one that the drive begins with.
   void begin_mode();
   /// Carries out the write of an `emulated` object.
-  void make(ObjectId id, std::int64_t number);
+  void make(model::ObjectId id, std::int64_t number);
   /// The drive has acknowledged a start. `relative`: the target is a distance. `ends_at`: see Action.
   void started(MotionKind kind, bool relative, std::optional<std::int64_t> ends_at);
   /// What must be read to know this object: itself, or, of an `emulated` statusword, the oldest of its samples.
-  [[nodiscard]] ObjectId to_read(ObjectId id) const;
+  [[nodiscard]] model::ObjectId to_read(model::ObjectId id) const;
   /// New samples, or time has passed: whether there is a fault, and what names it.
   void watch_fault();
   /// A sample of this object names the cause of the fault that there is now, not of one before.
-  [[nodiscard]] bool names_cause(ObjectId id) const;
+  [[nodiscard]] bool names_cause(model::ObjectId id) const;
   /// The statusword is made from it, or is it.
-  [[nodiscard]] bool tells_state(ObjectId id) const { return drive::tells_state(model, id); }
+  [[nodiscard]] bool tells_state(model::ObjectId id) const { return drive::tells_state(model, id); }
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
   /// The object that a quantity is read from or written to, where the drive has it; else kNoObject.
-  [[nodiscard]] ObjectId object_of(Quantity quantity) const;
+  [[nodiscard]] model::ObjectId object_of(Quantity quantity) const;
   /// What tells whether it moves, likewise.
-  [[nodiscard]] ObjectId motion_object() const;
+  [[nodiscard]] model::ObjectId motion_object() const;
   /// The unified number of the mode in force, 0 where it is unknown or the drive's number stands for none.
   [[nodiscard]] int mode_in_force() const;
   /// In this mode a target velocity or torque acts at once.
@@ -93,7 +93,7 @@ struct AxisCore {
   /// The controlword in effect: sent last by anyone, or read.
   [[nodiscard]] std::uint16_t controlword() const;
   [[nodiscard]] bool alarm(AxisAlarm a) const { return (alarms & bit(a)) != 0; }
-  [[nodiscard]] const ObjectDef& object(ObjectId id) const { return drive.object(id); }
+  [[nodiscard]] const model::ObjectDef& object(model::ObjectId id) const { return drive.object(id); }
   /// A write of this target would by itself move the axis on this drive, now.
   [[nodiscard]] bool held_back(Quantity target) const;
   /// The position a move uses: what a client asked for last, else what the drive holds.
@@ -115,7 +115,7 @@ struct AxisCore {
 };
 
 /// The fault words of an axis and what they mean: the first active row of the profile's alarm table.
-[[nodiscard]] const AlarmRow* active_alarm(const AxisCore& core);
+[[nodiscard]] const model::AlarmRow* active_alarm(const AxisCore& core);
 /// What the drive names now: the code of that row, or else what it holds as its error code itself; 0: nothing.
 [[nodiscard]] std::uint16_t named_code(const AxisCore& core);
 /// The cause of the fault that there is, what is to be done, and the words it was found in (fault_text.cpp).

@@ -10,12 +10,12 @@ namespace {
 // What a standing servo hunts, as the drive counts; as profiles have it for "within".
 constexpr std::int64_t kHunts = 10;
 
-ObjectId object_of(const AxisCore& core, const std::optional<Condition>& condition) {
-  return condition && !core.store[condition->object].refused ? condition->object : kNoObject;
+model::ObjectId object_of(const AxisCore& core, const std::optional<model::Condition>& condition) {
+  return condition && !core.store[condition->object].refused ? condition->object : model::kNoObject;
 }
 
-bool fresh(const AxisCore& core, ObjectId id, std::uint64_t after) {
-  return id != kNoObject && core.store[id].known && core.store[id].exchange > after;
+bool fresh(const AxisCore& core, model::ObjectId id, std::uint64_t after) {
+  return id != model::kNoObject && core.store[id].known && core.store[id].exchange > after;
 }
 
 // Limit and home switches are looked for by moving. On an index pulse, against an end stop or "here" an axis may stand
@@ -28,21 +28,22 @@ void EffectWatch::sending(const AxisCore& core) {
   sent_at_ = core.turn.now;
   const AxisFacts facts = core.facts();
   before_ = {.moving = facts.moving, .homed = facts.reference, .homing_failed = facts.homing_failed};
-  if (const ObjectId id = core.object_of(Quantity::position_actual); id != kNoObject && core.store[id].known)
+  if (const model::ObjectId id = core.object_of(Quantity::position_actual);
+      id != model::kNoObject && core.store[id].known)
     before_.position = core.store[id].number;
-  const ObjectId id = core.object_of(Quantity::velocity_actual);
+  const model::ObjectId id = core.object_of(Quantity::velocity_actual);
   const auto speed = core.value(Quantity::velocity_actual);
-  if (id != kNoObject && speed && core.store[id].cached &&
+  if (id != model::kNoObject && speed && core.store[id].cached &&
       core.turn.now - core.store[id].sent_at <= core.model.velocity_lag)
     fastest_ = std::max(fastest_, std::abs(*speed));
 }
 
-ObjectId EffectWatch::to_read(const AxisCore& core, Effect effect) {
-  ObjectId oldest = kNoObject;
-  const auto consider = [&](ObjectId id) {
-    if (id == kNoObject) return;
+model::ObjectId EffectWatch::to_read(const AxisCore& core, Effect effect) {
+  model::ObjectId oldest = model::kNoObject;
+  const auto consider = [&](model::ObjectId id) {
+    if (id == model::kNoObject) return;
     id = core.to_read(id);
-    if (oldest == kNoObject || core.store[id].exchange < core.store[oldest].exchange) oldest = id;
+    if (oldest == model::kNoObject || core.store[id].exchange < core.store[oldest].exchange) oldest = id;
   };
   consider(core.motion_object());
   consider(core.object_of(effect == Effect::stop ? Quantity::velocity_actual : Quantity::position_actual));
@@ -64,7 +65,7 @@ bool EffectWatch::stops(const AxisCore& core, std::uint64_t after) {
     const std::int64_t slower = std::max(fastest_ / kPartSlower, core.model.standstill_velocity);
     if (fastest_ - std::abs(*speed) >= slower) return true;
   }
-  const ObjectId moves = core.motion_object();
+  const model::ObjectId moves = core.motion_object();
   const bool sampled = moves == core.object_of(Quantity::velocity_actual);
   return fresh(core, moves, after) && !core.facts().moving &&
          (!sampled || core.turn.now - sent_at_ >= core.model.velocity_lag);
@@ -75,7 +76,7 @@ bool EffectWatch::stops(const AxisCore& core, std::uint64_t after) {
 bool EffectWatch::homes(const AxisCore& core, std::uint64_t after) const {
   const AxisFacts facts = core.facts();
   if (fresh(core, core.motion_object(), after) && facts.moving) return true;
-  const ObjectId position = core.object_of(Quantity::position_actual);
+  const model::ObjectId position = core.object_of(Quantity::position_actual);
   if (before_.position && !before_.moving && fresh(core, position, after) &&
       std::abs(core.store[position].number - *before_.position) > kHunts)
     return true;
@@ -85,9 +86,9 @@ bool EffectWatch::homes(const AxisCore& core, std::uint64_t after) const {
 }
 
 bool stop_shows(const AxisCore& core) {
-  const ObjectId id = core.motion_object();
+  const model::ObjectId id = core.motion_object();
   const bool keeps_torque = core.is_virtual() && core.model.virtual_axis->gate_only;
-  if (id == kNoObject || (!core.shows_torque() && !keeps_torque)) return false;
+  if (id == model::kNoObject || (!core.shows_torque() && !keeps_torque)) return false;
   return core.motion.stopping() || core.facts().moving || !core.store[id].cached;
 }
 

@@ -20,7 +20,7 @@ class EffectWatch {
   /// A write goes on the wire now: what is known of the axis is what was so before it.
   void sending(const AxisCore& core);
   /// What must be read to see the effect, what was read longest ago first; kNoObject: nothing of this drive shows it.
-  [[nodiscard]] static ObjectId to_read(const AxisCore& core, Effect effect);
+  [[nodiscard]] static model::ObjectId to_read(const AxisCore& core, Effect effect);
   /// Samples of exchanges later than `after` show it, or show that nobody can tell.
   [[nodiscard]] bool shown(const AxisCore& core, Effect effect, std::uint64_t after);
 

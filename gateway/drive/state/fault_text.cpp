@@ -9,20 +9,22 @@
 namespace axisgate::drive {
 namespace {
 
-std::string named_by(const AlarmRow& row) { return row.remedy.empty() ? row.text : row.text + "; " + row.remedy; }
+std::string named_by(const model::AlarmRow& row) {
+  return row.remedy.empty() ? row.text : row.text + "; " + row.remedy;
+}
 
 /// The drive has sent a code and named no word: what the alarm table knows of that code.
 std::string named_by_code(const AxisCore& core, std::uint16_t code) {
   if (code == 0) return "the drive names no cause";
   const auto& rows = core.drive.alarms;
-  const auto row = std::find_if(rows.begin(), rows.end(), [code](const AlarmRow& r) { return r.code == code; });
+  const auto row = std::find_if(rows.begin(), rows.end(), [code](const model::AlarmRow& r) { return r.code == code; });
   const std::string sent = fmt::format("error code 0x{:04X}", code);
   return row == rows.end() ? sent + ", which the profile does not list" : sent + ": " + named_by(*row);
 }
 
 /// The words as they were read; of `core`'s fault only where they were read after it.
-void add_words(const AxisCore& core, const AxisModel& axis, bool own, std::string& out) {
-  for (const ObjectId id : cause_objects(axis)) {
+void add_words(const AxisCore& core, const model::AxisModel& axis, bool own, std::string& out) {
+  for (const model::ObjectId id : cause_objects(axis)) {
     const ObjectState& word = core.store[id];
     const bool counts = own ? core.names_cause(id) : word.known && word.number != 0;
     if (!counts) continue;
@@ -37,11 +39,11 @@ void add_words(const AxisCore& core, const AxisModel& axis, bool own, std::strin
 // A remedy may send its reader to another word of the drive: all of them stand behind it, of other motors what is not
 // 0.
 std::string fault_text(const AxisCore& core) {
-  const AlarmRow* row = active_alarm(core);
+  const model::AlarmRow* row = active_alarm(core);
   std::string out = row != nullptr ? named_by(*row) : named_by_code(core, core.fault.code());
   std::string words;
   add_words(core, core.model, true, words);
-  for (const AxisModel& other : core.drive.axes)
+  for (const model::AxisModel& other : core.drive.axes)
     if (&other != &core.model) add_words(core, other, false, words);
   return words.empty() ? out : out + " [" + words + "]";
 }

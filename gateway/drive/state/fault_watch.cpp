@@ -6,17 +6,17 @@
 
 namespace axisgate::drive {
 
-CauseObjects cause_objects(const AxisModel& model) {
+CauseObjects cause_objects(const model::AxisModel& model) {
   CauseObjects out;
-  const auto add = [&](ObjectId id) {
+  const auto add = [&](model::ObjectId id) {
     const bool has = std::find(out.begin(), out.end(), id) != out.end();
-    if (id != kNoObject && !has && out.size() < out.capacity()) out.push_back(id);
+    if (id != model::kNoObject && !has && out.size() < out.capacity()) out.push_back(id);
   };
-  for (const ObjectId word : model.fault_words) add(word);
+  for (const model::ObjectId word : model.fault_words) add(word);
   for (const Quantity quantity : {Quantity::error_code, Quantity::vendor_error})
-    if (const Binding* binding = model.binding(quantity)) {
+    if (const model::Binding* binding = model.binding(quantity)) {
       add(binding->object);
-      for (const BitField& field : binding->bits) add(field.object);
+      for (const model::BitField& field : binding->bits) add(field.object);
     }
   return out;
 }
@@ -103,7 +103,7 @@ bool FaultWatch::take_missed() { return std::exchange(missed_, false); }
 
 bool FaultWatch::take_over() { return std::exchange(over_, false); }
 
-std::optional<ObjectId> FaultWatch::next(Instant now) const {
+std::optional<model::ObjectId> FaultWatch::next(Instant now) const {
   const bool wanted = withheld() || words_ahead();
   if (!wanted || round_.empty() || now < round_due_) return std::nullopt;
   return round_[round_at_];

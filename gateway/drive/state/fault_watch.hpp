@@ -21,13 +21,13 @@ inline constexpr Duration kCausePause = std::chrono::milliseconds(100);
 inline constexpr std::size_t kMaxCauseObjects = 6;
 
 /// What names the causes of an axis's faults, each object once.
-using CauseObjects = boost::container::static_vector<ObjectId, kMaxCauseObjects>;
-[[nodiscard]] CauseObjects cause_objects(const AxisModel& model);
+using CauseObjects = boost::container::static_vector<model::ObjectId, kMaxCauseObjects>;
+[[nodiscard]] CauseObjects cause_objects(const model::AxisModel& model);
 
 class FaultWatch {
  public:
   struct Word {
-    ObjectId object = kNoObject;
+    model::ObjectId object = model::kNoObject;
     bool refused = false;
     bool tells_state = false;  ///< the statusword is made from it: the sample that shows the fault names its cause
     std::int64_t number = 0;
@@ -37,7 +37,7 @@ class FaultWatch {
     Instant at = kLongAgo;  ///< now
     bool known = false;     ///< the statusword was read since bring-up began
     bool faulted = false;
-    ObjectId statusword = kNoObject;
+    model::ObjectId statusword = model::kNoObject;
     std::uint64_t statusword_exchange = 0;
     boost::container::static_vector<Word, kMaxCauseObjects> words;
   };
@@ -67,7 +67,7 @@ class FaultWatch {
   [[nodiscard]] bool take_over();
 
   /// What is to be read next, before anything but stops; none: nothing now.
-  [[nodiscard]] std::optional<ObjectId> next(Instant now) const;
+  [[nodiscard]] std::optional<model::ObjectId> next(Instant now) const;
   /// It goes on the wire.
   void asked(Instant now);
   /// When observe() and next() must be looked at again even without samples.

@@ -5,9 +5,9 @@
 
 namespace axisgate::drive {
 
-bool NvmBudget::take(Nvm nvm, Instant now) {
-  if (nvm == Nvm::no) return true;
-  if (nvm == Nvm::unknown) {
+bool NvmBudget::take(model::Nvm nvm, Instant now) {
+  if (nvm == model::Nvm::no) return true;
+  if (nvm == model::Nvm::unknown) {
     ++unknown_;
     return true;
   }

@@ -20,7 +20,7 @@ class NvmBudget {
   static constexpr std::uint32_t kManyUnknown = 100000;
 
   /// Whether a write may be sent now; it counts as sent then.
-  [[nodiscard]] bool take(Nvm nvm, Instant now);
+  [[nodiscard]] bool take(model::Nvm nvm, Instant now);
   /// A write was refused and no other may be sent yet, or too many of unknown storage were.
   [[nodiscard]] bool alarm(Instant now) const;
   [[nodiscard]] std::uint32_t stored() const { return stored_; }    ///< writes of nvm "yes" that were sent

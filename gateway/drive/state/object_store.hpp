@@ -33,11 +33,11 @@ class ObjectStore {
  public:
   explicit ObjectStore(std::size_t objects) : states_(objects), periods_(objects), aliases_(objects) {}
   /// Objects that are aliases of one another share what becomes of any of them.
-  explicit ObjectStore(const std::vector<ObjectDef>& objects) : ObjectStore(objects.size()) {
+  explicit ObjectStore(const std::vector<model::ObjectDef>& objects) : ObjectStore(objects.size()) {
     for (std::size_t i = 0; i < objects.size(); ++i) aliases_[i] = objects[i].aliases;
   }
 
-  [[nodiscard]] const ObjectState& operator[](ObjectId id) const {
+  [[nodiscard]] const ObjectState& operator[](model::ObjectId id) const {
     assert(id < states_.size());
     return states_[id];
   }
@@ -51,12 +51,12 @@ class ObjectStore {
   [[nodiscard]] std::uint64_t exchange() const { return exchange_; }
   /// The number was asked for after the last thing that was sent to change anything: what was read before a stop went
   /// out shows neither that stop nor what was asked after it. Whoever finds something "so already" asks this.
-  [[nodiscard]] bool shows_now(ObjectId id) const {
+  [[nodiscard]] bool shows_now(model::ObjectId id) const {
     const ObjectState& s = (*this)[id];
     return s.known && s.cached && s.exchange > last_change_;
   }
 
-  void read(ObjectId id, std::int64_t number, Instant sent_at) {
+  void read(model::ObjectId id, std::int64_t number, Instant sent_at) {
     each(id, [&](ObjectState& s) {
       const bool clamped = s.unverified ? s.number != number : s.clamped && s.number == number;
       s = {.number = number,
@@ -68,12 +68,12 @@ class ObjectStore {
     });
   }
   /// It came by itself. The first one after the last sending may have been on its way before: it tells nothing of it.
-  void received(ObjectId id, std::int64_t number, Instant at) {
+  void received(model::ObjectId id, std::int64_t number, Instant at) {
     const bool first = (*this)[id].exchange < last_change_;
     read(id, number, at);
     if (first) each(id, [this](ObjectState& s) { s.exchange = last_change_; });
   }
-  void acknowledged(ObjectId id, std::int64_t number, Instant sent_at) {
+  void acknowledged(model::ObjectId id, std::int64_t number, Instant sent_at) {
     each(id, [&](ObjectState& s) {
       s = {.number = number,
            .known = true,
@@ -85,22 +85,22 @@ class ObjectStore {
   }
   /// Of a frame that carries the whole desired state: it was sent and may not have arrived, and what it asked for is
   /// what the next one asks for.
-  void asked(ObjectId id, std::int64_t number, Instant sent_at) {
+  void asked(model::ObjectId id, std::int64_t number, Instant sent_at) {
     each(id, [&](ObjectState& s) {
       s = {.number = number, .known = true, .unsure = true, .sent_at = sent_at, .exchange = s.exchange};
     });
   }
   /// The gateway's own number, made from samples of this exchange; kLongAgo and 0: from none.
-  void make(ObjectId id, std::int64_t number, bool cached = true, Instant sent_at = kLongAgo,
+  void make(model::ObjectId id, std::int64_t number, bool cached = true, Instant sent_at = kLongAgo,
             std::uint64_t exchange = 0) {
     at(id) = {
         .number = number, .known = true, .cached = cached, .emulated = true, .sent_at = sent_at, .exchange = exchange};
   }
-  void refused(ObjectId id) { at(id) = {.refused = true}; }
-  void unresponsive(ObjectId id) { at(id) = {.refused = true, .unresponsive = true}; }
-  void unlike(ObjectId id) { at(id) = {.refused = true, .unlike = true}; }
+  void refused(model::ObjectId id) { at(id) = {.refused = true}; }
+  void unresponsive(model::ObjectId id) { at(id) = {.refused = true, .unresponsive = true}; }
+  void unlike(model::ObjectId id) { at(id) = {.refused = true, .unlike = true}; }
   /// A write of it may or may not have happened.
-  void invalidate(ObjectId id) {
+  void invalidate(model::ObjectId id) {
     each(id, [](ObjectState& s) {
       s.cached = s.unverified = false;
       s.unsure = true;
@@ -108,7 +108,7 @@ class ObjectStore {
   }
   /// Nothing is taken as cached any more, but what `except` holds: timeout, mailbox write, mode change, fault reset,
   /// set_position (design 3.3).
-  void invalidate_all(ObjectId except = kNoObject) {
+  void invalidate_all(model::ObjectId except = model::kNoObject) {
     for (std::size_t i = 0; i < states_.size(); ++i)
       if (!same_place(i, except) && !states_[i].emulated) states_[i].cached = states_[i].unverified = false;
     ++invalidations_;
@@ -121,13 +121,13 @@ class ObjectStore {
   /// How often invalidate_all() was called: whoever keeps the image true reads everything again then.
   [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
   /// What it was last may be true, but nothing confirms it any more: good only when it is read again.
-  void outdate(ObjectId id) {
+  void outdate(model::ObjectId id) {
     each(id, [](ObjectState& s) { s.sent_at = kLongAgo; });
   }
-  void forget(ObjectId id) { at(id) = {}; }
+  void forget(model::ObjectId id) { at(id) = {}; }
   /// How often the object is confirmed, where that is not its poll class's period; 0: it is.
-  void set_period(ObjectId id, Duration period) { periods_[id] = period; }
-  [[nodiscard]] Duration period(ObjectId id) const { return periods_[id]; }
+  void set_period(model::ObjectId id, Duration period) { periods_[id] = period; }
+  [[nodiscard]] Duration period(model::ObjectId id) const { return periods_[id]; }
   /// Bring-up begins: nothing is known but what is the gateway's own.
   void forget_all() {
     for (ObjectState& s : states_)
@@ -135,23 +135,23 @@ class ObjectStore {
   }
 
  private:
-  ObjectState& at(ObjectId id) {
+  ObjectState& at(model::ObjectId id) {
     assert(id < states_.size());
     return states_[id];
   }
   template <typename Change>
-  void each(ObjectId id, Change change) {
+  void each(model::ObjectId id, Change change) {
     change(at(id));
-    for (const ObjectId alias : aliases_[id]) change(at(alias));
+    for (const model::ObjectId alias : aliases_[id]) change(at(alias));
   }
-  [[nodiscard]] bool same_place(std::size_t id, ObjectId other) const {
-    if (other == kNoObject) return false;
+  [[nodiscard]] bool same_place(std::size_t id, model::ObjectId other) const {
+    if (other == model::kNoObject) return false;
     const auto& aliases = aliases_[other];
     return id == other || std::find(aliases.begin(), aliases.end(), id) != aliases.end();
   }
   std::vector<ObjectState> states_;
   std::vector<Duration> periods_;
-  std::vector<std::vector<ObjectId>> aliases_;
+  std::vector<std::vector<model::ObjectId>> aliases_;
   std::uint64_t exchange_ = 0;
   std::uint64_t last_change_ = 0;  ///< the newest exchange that was no mere read
   std::uint64_t invalidations_ = 0;

@@ -5,7 +5,7 @@
 #include <array>
 #include <charconv>
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 constexpr std::size_t kMaxLine = 4096;  // CiA 306 allows 255
@@ -146,19 +146,19 @@ class Objects {
   static constexpr std::size_t kIndexDigits = 4;
 
   /// "6099", "6099sub1", "6099suba"; none of [DeviceInfo], [6099Name], [6099Value].
-  static std::optional<bus::ObjectAddress> address_of(std::string_view name) {
+  static std::optional<ObjectAddress> address_of(std::string_view name) {
     if (name.size() < kIndexDigits) return std::nullopt;
     const auto index = digits(name.substr(0, kIndexDigits), 16);
     if (!index || *index > kLastIndex) return std::nullopt;
     name.remove_prefix(kIndexDigits);
-    if (name.empty()) return bus::ObjectAddress{static_cast<std::uint16_t>(*index), 0};
+    if (name.empty()) return ObjectAddress{static_cast<std::uint16_t>(*index), 0};
     if (!name.starts_with("sub")) return std::nullopt;
     const auto sub = digits(name.substr(3), 16);
     if (!sub || *sub > kLastSub) return std::nullopt;
-    return bus::ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
+    return ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
   }
 
-  void read_object(bus::ObjectAddress address, const Section& section, bool is_sub) {
+  void read_object(ObjectAddress address, const Section& section, bool is_sub) {
     EdsObject object = described(section);
     const std::int64_t count = is_sub ? 0 : number_in(section, "compactsubobj").value_or(0);
     if (count > 0) return spread(address.index, object, static_cast<std::uint8_t>(std::min(count, kLastSub - 1)));
@@ -188,7 +188,7 @@ class Objects {
   }
 
   /// A section of its own counts more than what a compact array says of all.
-  void put(bus::ObjectAddress address, EdsObject object) {
+  void put(ObjectAddress address, EdsObject object) {
     if (out_.objects.size() >= kMaxEdsObjects) return;
     const bool own = address_of(lower(object.section)) == address;
     if (own)
@@ -282,4 +282,4 @@ std::string eds_type_name(EdsType type) {
   return out;
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -15,7 +15,7 @@
 
 #include "adapters/bus/exchange.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 inline constexpr std::size_t kMaxEdsBytes = std::size_t{4} << 20U;
 inline constexpr std::size_t kMaxEdsObjects = 65536;
@@ -42,7 +42,7 @@ struct EdsFault {
 struct Eds {
   std::string vendor_name, product_name;
   std::optional<std::int64_t> vendor, product, revision;
-  std::map<bus::ObjectAddress, EdsObject> objects;
+  std::map<ObjectAddress, EdsObject> objects;
   std::vector<EdsFault> faults;
 };
 
@@ -57,4 +57,4 @@ struct EdsWidth {
 /// "UNSIGNED16"; "type 0x0040" of what CiA 301 does not name.
 [[nodiscard]] std::string eds_type_name(EdsType type);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

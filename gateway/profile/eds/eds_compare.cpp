@@ -5,7 +5,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 constexpr std::string_view kCanopen = "canopen";
@@ -21,7 +21,7 @@ std::string hex(std::uint32_t value, int figures) {
 }
 
 /// As a section of it would be called.
-std::string section_of(bus::ObjectAddress address) {
+std::string section_of(ObjectAddress address) {
   return hex(address.index, 4) + (address.sub == 0 ? "" : "sub" + hex(address.sub, address.sub > 0xF ? 2 : 1));
 }
 
@@ -49,7 +49,7 @@ class Comparison {
     const auto at = object.places.find(kCanopen);
     return at == object.places.end() ? nullptr : &at->second;
   }
-  [[nodiscard]] const EdsObject* find(bus::ObjectAddress address) const {
+  [[nodiscard]] const EdsObject* find(ObjectAddress address) const {
     const auto at = eds_.objects.find(address);
     return at == eds_.objects.end() ? nullptr : &at->second;
   }
@@ -164,4 +164,4 @@ std::vector<EdsContradiction> contradictions(const Profile& profile, const Eds& 
   return Comparison(profile, eds).run();
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

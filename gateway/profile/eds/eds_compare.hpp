@@ -10,7 +10,7 @@
 #include "gateway/profile/eds/eds.hpp"
 #include "gateway/profile/read/profile.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 struct EdsContradiction {
   std::string pointer;  ///< into the profile
@@ -22,4 +22,4 @@ struct EdsContradiction {
 /// In the order of the profile's objects, then of what it maps and writes. The profile must have no fault of its own.
 [[nodiscard]] std::vector<EdsContradiction> contradictions(const Profile& profile, const Eds& eds);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

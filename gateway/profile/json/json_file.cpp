@@ -11,7 +11,7 @@
 
 #include "gateway/profile/json/json_schema.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -153,4 +153,4 @@ std::optional<Rational> rational_of(const json& value) {
   return value.is_number() ? Rational::parse(value.dump()) : std::nullopt;
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -13,7 +13,7 @@
 
 #include "gateway/core/nearest.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using nlohmann::json;
@@ -223,4 +223,4 @@ std::string pointer_to(std::string_view parent, std::string_view key) {
 
 std::string pointer_to(std::string_view parent, std::size_t index) { return pointer_to(parent, std::to_string(index)); }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

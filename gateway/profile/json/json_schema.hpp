@@ -16,7 +16,7 @@
 
 #include "gateway/core/rational.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 struct SchemaFault {
   std::string pointer;  ///< RFC 6901; empty: the whole document
@@ -66,4 +66,4 @@ enum class Pipes : std::uint8_t { refused, allowed };
 /// An exact number: a JSON integer, a decimal as it was written (27.5), or a decimal string ("1.414").
 [[nodiscard]] std::optional<Rational> rational_of(const nlohmann::json& value);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 Range Object::numbers() const {
   const std::int64_t span = std::int64_t{1} << (8 * type.size);
   Range out = type.is_signed ? Range{-span / 2, span / 2 - 1} : Range{0, span - 1};
@@ -24,7 +24,7 @@ bool KeepAliveSpec::is_on(std::string_view protocol) const {
   return on.empty() || std::find(on.begin(), on.end(), protocol) != on.end();
 }
 
-const Object* Profile::find(std::string_view object, bus::AxisSlot motor) const {
+const Object* Profile::find(std::string_view object, AxisSlot motor) const {
   const std::string own = motor < axes.size() ? axes[motor] + "." + std::string(object) : std::string();
   const Object* shared = nullptr;
   for (const Object& candidate : objects) {
@@ -40,4 +40,4 @@ const QuantitySpec* Profile::find(Quantity quantity) const {
   return at == quantities.end() ? nullptr : &*at;
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -13,15 +13,15 @@
 #include "gateway/model/model.hpp"
 #include "gateway/model/scale.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 struct Constant {
   /// Under "first": the product that the constant is, if its condition holds. Names are objects or other constants.
   struct Rule {
     bool conditional = false;
     bool equal = true;
-    Factor left, right;
-    std::vector<Factor> mul, div;
+    model::Factor left, right;
+    std::vector<model::Factor> mul, div;
   };
   std::optional<Rational> standard;  ///< key "default"
   std::optional<Rational> min, max;
@@ -39,7 +39,7 @@ struct DataType {
 
 /// Where an object is found on one protocol.
 struct Place {
-  bus::ObjectAddress address;
+  ObjectAddress address;
   bool write_only = false;   ///< keya-*: a command, which no query tells
   bool composed = false;     ///< keya-rs232, keya-rs485: a field of the one control frame
   bool turns_on = false;     ///< of those: says that its motor is to be on
@@ -50,14 +50,14 @@ struct Place {
 
 struct Object {
   std::string name;
-  bus::AxisSlot slot = bus::kNoAxis;  ///< position of its motor in Profile::axes
+  AxisSlot slot = kNoAxis;  ///< position of its motor in Profile::axes
   DataType type;
   bool readable = true;
   bool writable = false;
   bool trigger = false;
   bool any_width = false;  ///< canopen: read as wide as the drive answers
   bool mailbox_reads_only = false;
-  Nvm nvm = Nvm::no;
+  model::Nvm nvm = model::Nvm::no;
   std::string unit;
   std::optional<Range> range;  ///< raw
   std::string alias_of;
@@ -77,8 +77,8 @@ struct QuantitySpec {
   Quantity quantity{};
   std::vector<std::string> objects;  ///< the first that the protocol has
   std::vector<std::string> units;    ///< one for all motors, or one for each; empty: the object's
-  std::optional<PollClass> poll;
-  std::optional<Amount> min, max;
+  std::optional<model::PollClass> poll;
+  std::optional<model::Amount> min, max;
   std::vector<BitsSpec> bits;
   std::string pointer;
   /// What this object counts in, where it stands for the quantity.
@@ -88,7 +88,7 @@ struct QuantitySpec {
 struct ConditionSpec {
   std::string object;
   std::uint32_t mask = 0;
-  Condition::Test test{};
+  model::Condition::Test test{};
   std::vector<std::int64_t> values;
   /// Checks: compared with this constant of the configuration, times so many; empty: with `values`.
   std::string constant;
@@ -98,10 +98,10 @@ struct ConditionSpec {
 /// Register 78: the position that command set_position asks for.
 struct SetPositionValue {};
 
-using ValueSpec = std::variant<std::int64_t, Amount, Quantity, SetPositionValue>;
+using ValueSpec = std::variant<std::int64_t, model::Amount, Quantity, SetPositionValue>;
 
 struct StepSpec {
-  Step::Verb verb{};
+  model::Step::Verb verb{};
   std::string object;
   std::vector<ValueSpec> values;  ///< of a write: one for all axes, or one for each
   ConditionSpec until;
@@ -196,9 +196,9 @@ struct ProtocolSpec {
   Duration worst_reply{};
   Duration timeout{};
   LossSpec loss;
-  Duration heartbeat{};  ///< keya-can only: the drive sends its own so often; 0: not stated
-  RtuProperties rtu;     ///< modbus-rtu only
-  CanopenSpec canopen;   ///< canopen only
+  Duration heartbeat{};      ///< keya-can only: the drive sends its own so often; 0: not stated
+  model::RtuProperties rtu;  ///< modbus-rtu only
+  CanopenSpec canopen;       ///< canopen only
   [[nodiscard]] bool stops_by_itself() const { return loss.by != LossSpec::By::nothing; }
 };
 
@@ -246,10 +246,10 @@ struct HomingSpec {
 
 struct Profile {
   std::string name, title;
-  Nvm nvm = Nvm::unknown;         ///< of objects that do not say it, and of those that are not listed
-  std::vector<std::string> axes;  ///< "A", "B": one for each motor
+  model::Nvm nvm = model::Nvm::unknown;  ///< of objects that do not say it, and of those that are not listed
+  std::vector<std::string> axes;         ///< "A", "B": one for each motor
   std::map<std::string, Constant, std::less<>> constants;
-  std::map<std::string, Unit, std::less<>> units;
+  std::map<std::string, model::Unit, std::less<>> units;
   std::map<std::string, ProtocolSpec, std::less<>> protocols;
   std::vector<Object> objects;
   std::vector<QuantitySpec> quantities;
@@ -265,8 +265,8 @@ struct Profile {
   std::optional<KeepAliveSpec> keepalive;
 
   /// The object that `name` means for this motor: its own ("A.speed") before the drive's ("speed").
-  [[nodiscard]] const Object* find(std::string_view object, bus::AxisSlot motor) const;
+  [[nodiscard]] const Object* find(std::string_view object, AxisSlot motor) const;
   [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
 };
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

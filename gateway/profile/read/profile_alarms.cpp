@@ -6,7 +6,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -198,4 +198,4 @@ void read_alarms(Reading& reading) {
     reading.fault("/alarms", "lists no fault: give \"rows\" or \"codes\"");
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

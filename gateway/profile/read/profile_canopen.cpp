@@ -6,7 +6,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -18,7 +18,7 @@ constexpr std::int64_t kLargestU16 = 0xFFFF;
 constexpr std::size_t kPdoBytes = 8;
 constexpr std::int64_t kLastSynchronousType = 240;
 constexpr std::int64_t kFirstEventType = 254;
-constexpr bus::ObjectAddress kProducerHeartbeat{0x1017, 0};
+constexpr ObjectAddress kProducerHeartbeat{0x1017, 0};
 
 void read_guard(const json& node, CanopenSpec& out) {
   const json* guard = member(node, "guard");
@@ -94,7 +94,7 @@ void check_map(Reading& reading, const CanopenSpec::Tpdo& tpdo, std::set<std::st
 }
 
 /// What setup writes to the object at this address, where it is one number for all.
-std::optional<std::int64_t> set_up(const Profile& profile, bus::ObjectAddress address) {
+std::optional<std::int64_t> set_up(const Profile& profile, ObjectAddress address) {
   for (const WriteSpec& write : profile.setup) {
     if (!write.on.empty() && std::find(write.on.begin(), write.on.end(), "canopen") == write.on.end()) continue;
     const Object* object = profile.find(write.object, 0);
@@ -151,7 +151,7 @@ void check_consumer(Reading& reading, const LossSpec& loss, const std::string& p
   if (after < 3 || after > kLargestU16)
     reading.fault(pointer_to(pointer, "after_ms"),
                   "must be 3 to 65535: it goes into 1016h, and a third of it is the gateway's own heartbeat");
-  check_written(reading, loss.object, std::int64_t{kOwnNode} << 16 | after, pointer_to(pointer, "object"));
+  check_written(reading, loss.object, std::int64_t{model::kOwnNode} << 16 | after, pointer_to(pointer, "object"));
 }
 
 void check_life_guarding(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer) {
@@ -191,4 +191,4 @@ void check_canopen(Reading& reading, const ProtocolSpec& protocol, const std::st
     check_life_guarding(reading, protocol, pointer_to(pointer, "loss"));
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -7,7 +7,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -70,8 +70,8 @@ class StepReader {
     if (member(node, "write") != nullptr) {
       write(node, out);
     } else {
-      out.verb = member(node, "wait") != nullptr ? Step::Verb::wait : Step::Verb::require;
-      out.object = text_in(node, out.verb == Step::Verb::wait ? "wait" : "require");
+      out.verb = member(node, "wait") != nullptr ? model::Step::Verb::wait : model::Step::Verb::require;
+      out.object = text_in(node, out.verb == model::Step::Verb::wait ? "wait" : "require");
       out.until = reading_.condition(node, out.object, pointer);
       timing(node, out);
     }
@@ -79,7 +79,7 @@ class StepReader {
   }
 
   void write(const json& node, StepSpec& out) {
-    out.verb = Step::Verb::write;
+    out.verb = model::Step::Verb::write;
     out.object = text_in(node, "write");
     const std::string at = pointer_to(out.pointer, "value");
     const json* value = member(node, "value");
@@ -100,12 +100,12 @@ class StepReader {
 
   void timing(const json& node, StepSpec& out) {
     const std::int64_t ms = whole_in(node, "ms", 0);
-    if (out.verb == Step::Verb::wait && ms <= 0) reading_.fault(out.pointer, "a wait needs a limit: \"ms\"");
-    if (out.verb == Step::Verb::require && member(node, "ms") != nullptr)
+    if (out.verb == model::Step::Verb::wait && ms <= 0) reading_.fault(out.pointer, "a wait needs a limit: \"ms\"");
+    if (out.verb == model::Step::Verb::require && member(node, "ms") != nullptr)
       reading_.fault(pointer_to(out.pointer, "ms"), "a require is judged once and has no limit; to wait, use \"wait\"");
     out.limit = std::chrono::milliseconds(ms);
     out.optional = flag_in(node, "optional", false);
-    out.otherwise = out.verb == Step::Verb::wait ? Errc::not_reached : outcome_named(text_in(node, "else"));
+    out.otherwise = out.verb == model::Step::Verb::wait ? Errc::not_reached : outcome_named(text_in(node, "else"));
   }
 
   Reading& reading_;
@@ -157,7 +157,8 @@ void check_set_position_value(Reading& reading, const CommandSpec& command, cons
 void check_stops(Reading& reading, const CommandSpec& command, const json& node) {
   if (!is_stop(command.command)) return;
   const auto check = [&](const std::vector<StepSpec>& steps, const std::string& pointer) {
-    if (std::none_of(steps.begin(), steps.end(), [](const StepSpec& step) { return step.verb == Step::Verb::write; }))
+    if (std::none_of(steps.begin(), steps.end(),
+                     [](const StepSpec& step) { return step.verb == model::Step::Verb::write; }))
       reading.fault(pointer_to(pointer, "steps"), "write nothing, so they stop nothing");
     else
       check_stops_by_word(reading, command, steps, pointer_to(pointer, "steps"));
@@ -174,7 +175,7 @@ void check_starts_nothing(Reading& reading, const CommandSpec& command) {
   bool commands = false;
   const auto check = [&](const std::vector<StepSpec>& steps) {
     for (const StepSpec& step : steps) {
-      if (step.verb != Step::Verb::write) continue;
+      if (step.verb != model::Step::Verb::write) continue;
       commands = commands || is_of(reading, step.object, Quantity::controlword);
       if (is_of(reading, step.object, Quantity::mode))
         reading.fault(pointer_to(step.pointer, "write"),
@@ -266,4 +267,4 @@ void read_commands(Reading& reading) {
       reading.fault("/commands", "command \"" + std::string(name) + "\" is missing: every drive must have one");
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -7,13 +7,13 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
 namespace {
 
-// Where bus::ObjectAddress says these objects are.
+// Where ObjectAddress says these objects are.
 constexpr std::uint16_t kQuery = 0x2100, kOn = 0x200D, kValue = 0x2000, kHeartbeat = 0x7000;
 constexpr std::int64_t kValueSize = 4;
 /// First byte and size of what keya-can's heartbeat holds.
@@ -130,7 +130,7 @@ class PlaceInFrame {
 
   std::optional<Place> command(Place out, std::uint16_t index, std::uint8_t sub) {
     if (!object_.writable) return refuse("is a command: \"access\" must be wo or rw");
-    if (object_.slot != bus::kNoAxis && object_.slot + 1 != sub)
+    if (object_.slot != kNoAxis && object_.slot + 1 != sub)
       return refuse("is motor " + std::to_string(sub) + "'s place, and object \"" + object_.name +
                     "\" belongs to another");
     out.address = {index, sub, 0};
@@ -159,16 +159,16 @@ std::optional<Place> place_in_frame(Reading& reading, std::string_view protocol,
 
 /// The control frame is written whole: what nobody can say of a motor would be sent as 0.
 void check_control_frame(Reading& reading, const std::string& protocol, const std::string& pointer) {
-  std::vector<bus::ObjectAddress> fields;
+  std::vector<ObjectAddress> fields;
   for (const Object& object : reading.profile.objects)
     if (const auto place = object.places.find(protocol); place != object.places.end() && place->second.composed)
       fields.push_back(place->second.address);
   if (fields.empty()) return;
   for (const auto& [index, what] : {std::pair(kOn, "enable bit"), std::pair(kValue, "value")})
     for (std::uint8_t motor = 1; motor <= kMotors; ++motor)
-      if (std::find(fields.begin(), fields.end(), bus::ObjectAddress{index, motor, 0}) == fields.end())
+      if (std::find(fields.begin(), fields.end(), ObjectAddress{index, motor, 0}) == fields.end())
         reading.fault(pointer, "no object is the " + std::string(what) + " of motor " + std::to_string(motor) +
                                    " in the control frame");
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -9,7 +9,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -326,4 +326,4 @@ LayeredProfile layered_profile(const std::string& path, const std::vector<std::s
   return Composer(folders).result(path);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

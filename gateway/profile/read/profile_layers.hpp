@@ -11,7 +11,7 @@
 
 #include "gateway/profile/read/profile_loader.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 /// How many files may stand behind one another by "extends", the first one not counted.
 inline constexpr std::size_t kMaxBases = 4;
@@ -29,4 +29,4 @@ struct LayeredProfile {
 /// `folders`: where a base is looked for that does not lie beside the file which extends it.
 [[nodiscard]] LayeredProfile layered_profile(const std::string& path, const std::vector<std::string>& folders);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

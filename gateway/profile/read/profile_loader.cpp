@@ -10,7 +10,7 @@
 #include "gateway/profile/read/profile_reading.hpp"
 #include "gateway/profile/read/profile_schema.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -118,4 +118,4 @@ std::optional<std::string> find_profile(const std::string& name_or_path, const s
   return std::nullopt;
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -11,7 +11,7 @@
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/read/profile.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 struct Fault {
   std::string file;
@@ -53,4 +53,4 @@ struct LoadedProfile {
                                                       const std::vector<std::string>& folders,
                                                       std::vector<FileRead>* missed = nullptr);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -6,7 +6,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -186,4 +186,4 @@ void check_keepalive(Reading& reading) {
   check_watchdogs(reading, spec);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -7,7 +7,7 @@
 #include "gateway/model/cia402.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 namespace {
 
@@ -47,7 +47,7 @@ std::vector<std::string> moving_objects(const Reading& reading) {
   for (const CommandSpec& command : profile.commands)
     if (may_move(command.command))
       each_step(command, [&](const StepSpec& step) {
-        if (step.verb == Step::Verb::write && !is_of(reading, step.object, Quantity::controlword))
+        if (step.verb == model::Step::Verb::write && !is_of(reading, step.object, Quantity::controlword))
           out.push_back(step.object);
       });
   return out;
@@ -55,13 +55,13 @@ std::vector<std::string> moving_objects(const Reading& reading) {
 
 bool may_enable(const ValueSpec& value) {
   const auto* number = std::get_if<std::int64_t>(&value);
-  return number == nullptr || enables(*number);
+  return number == nullptr || model::enables(*number);
 }
 
 bool is_not_zero(const ValueSpec& value) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) return *number != 0;
-  const auto* amount = std::get_if<Amount>(&value);
-  return amount != nullptr && amount->number != Factor(Rational(0));
+  const auto* amount = std::get_if<model::Amount>(&value);
+  return amount != nullptr && amount->number != model::Factor(Rational(0));
 }
 
 void check_write(Reading& reading, const std::vector<std::string>& moving, const WriteSpec& write) {
@@ -88,10 +88,10 @@ bool is_of(const Reading& reading, const std::string& object, Quantity quantity)
 void check_never_enables(Reading& reading, const CommandSpec& command) {
   if (may_move(command.command)) return;
   each_step(command, [&](const StepSpec& step) {
-    if (step.verb != Step::Verb::write || !is_of(reading, step.object, Quantity::controlword)) return;
+    if (step.verb != model::Step::Verb::write || !is_of(reading, step.object, Quantity::controlword)) return;
     const auto wrong = [&](const ValueSpec& value) {
       const auto* number = std::get_if<std::int64_t>(&value);
-      const bool halts = number != nullptr && (*number & controlword::kHalt) != 0;
+      const bool halts = number != nullptr && (*number & model::controlword::kHalt) != 0;
       return may_enable(value) && !(command.command == Command::halt && halts);
     };
     if (std::any_of(step.values.begin(), step.values.end(), wrong))
@@ -104,7 +104,8 @@ void check_never_enables(Reading& reading, const CommandSpec& command) {
 
 void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
   if (command.command != Command::enable) return;
-  const std::uint32_t starts = controlword::kStart | reading.profile.state.follow_bits.value_or(controlword::kMaker);
+  const std::uint32_t starts =
+      model::controlword::kStart | reading.profile.state.follow_bits.value_or(model::controlword::kMaker);
   const auto any = [](const StepSpec& step, auto&& wrong) {
     return std::any_of(step.values.begin(), step.values.end(), wrong);
   };
@@ -122,7 +123,7 @@ void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
     return quantity != nullptr && *quantity == Quantity::position_actual;
   };
   each_step(command, [&](const StepSpec& step) {
-    if (step.verb != Step::Verb::write) return;
+    if (step.verb != model::Step::Verb::write) return;
     if (is_of(reading, step.object, Quantity::controlword) && any(step, begins))
       reading.fault(pointer_to(step.pointer, "value"),
                     "an enable never moves the axis: bit 4 of the controlword and those of follow_bits must be 0");
@@ -149,7 +150,7 @@ void check_stops_by_word(Reading& reading, const CommandSpec& command, const std
     return number != nullptr && is_stop(static_cast<std::uint16_t>(*number), true);
   };
   const auto is_stopping = [&](const StepSpec& step) {
-    return step.verb == Step::Verb::write && is_of(reading, step.object, Quantity::controlword) &&
+    return step.verb == model::Step::Verb::write && is_of(reading, step.object, Quantity::controlword) &&
            std::all_of(step.values.begin(), step.values.end(), stops);
   };
   if (std::none_of(steps.begin(), steps.end(), is_stopping))
@@ -159,7 +160,8 @@ void check_stops_by_word(Reading& reading, const CommandSpec& command, const std
 void check_turns_nothing(Reading& reading, const CommandSpec& command) {
   if (may_move(command.command)) return;
   each_step(command, [&](const StepSpec& step) {
-    if (step.verb != Step::Verb::write || std::none_of(step.values.begin(), step.values.end(), is_not_zero)) return;
+    if (step.verb != model::Step::Verb::write || std::none_of(step.values.begin(), step.values.end(), is_not_zero))
+      return;
     for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
       if (is_of(reading, step.object, target))
         reading.fault(pointer_to(step.pointer, "value"),
@@ -178,13 +180,13 @@ void check_stops_start_nothing(Reading& reading) {
       return its != nullptr && *its == number;
     };
     each_step(command, [&](const StepSpec& step) {
-      found = found || (step.verb == Step::Verb::write && share_an_object(reading, object, step.object) &&
+      found = found || (step.verb == model::Step::Verb::write && share_an_object(reading, object, step.object) &&
                         std::any_of(step.values.begin(), step.values.end(), is_it));
     });
     return found;
   };
   const auto check = [&](const StepSpec& step) {
-    if (step.verb != Step::Verb::write) return;
+    if (step.verb != model::Step::Verb::write) return;
     for (const ValueSpec& value : step.values) {
       const auto* number = std::get_if<std::int64_t>(&value);
       if (number == nullptr || *number == 0) continue;
@@ -207,4 +209,4 @@ void check_unsolicited_writes(Reading& reading) {
     for (const WriteSpec& write : check.remedy) check_write(reading, moving, write);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -5,26 +5,26 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
 namespace {
 
-std::optional<bus::ObjectAddress> index_and_sub(const json& node) {
+std::optional<ObjectAddress> index_and_sub(const json& node) {
   if (!node.is_string()) return std::nullopt;
   const std::string& text = node.get_ref<const std::string&>();
   if (text.size() != 7 || text[4] != '.') return std::nullopt;
   const std::optional<std::int64_t> index = whole(json("0x" + text.substr(0, 4)));
   const std::optional<std::int64_t> sub = whole(json("0x" + text.substr(5)));
   if (!index || !sub) return std::nullopt;
-  return bus::ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
+  return ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
 }
 
-std::optional<bus::ObjectAddress> register_number(const json& node) {
+std::optional<ObjectAddress> register_number(const json& node) {
   const std::optional<std::int64_t> number = whole(node);
   if (!number || *number < 0 || *number > 0xFFFF) return std::nullopt;
-  return bus::ObjectAddress{static_cast<std::uint16_t>(*number), 0};
+  return ObjectAddress{static_cast<std::uint16_t>(*number), 0};
 }
 
 class PlaceReader {
@@ -44,9 +44,9 @@ class PlaceReader {
         reading_.fault(pointer_, "\"" + std::string(key) + "\" belongs to the keya protocols; " + expected());
     if (keya && (protocol_ != "keya-can" || member(node, "heartbeat") != nullptr || member(node, "query") != nullptr))
       return place_in_frame(reading_, protocol_, object_, node, pointer_, std::move(out));
-    const std::optional<bus::ObjectAddress> found = address == nullptr          ? std::nullopt
-                                                    : protocol_ == "modbus-rtu" ? register_number(*address)
-                                                                                : index_and_sub(*address);
+    const std::optional<ObjectAddress> found = address == nullptr          ? std::nullopt
+                                               : protocol_ == "modbus-rtu" ? register_number(*address)
+                                                                           : index_and_sub(*address);
     if (!found) {
       reading_.fault(
           pointer_,
@@ -99,7 +99,7 @@ void read_slot(Reading& reading, Object& out) {
   if (axis == axes.end())
     reading.fault(out.pointer, "\"" + out.name.substr(0, dot) + "\" is no axis of this drive: not under /axes");
   else
-    out.slot = static_cast<bus::AxisSlot>(axis - axes.begin());
+    out.slot = static_cast<AxisSlot>(axis - axes.begin());
 }
 
 void read_object(Reading& reading, const std::string& name, const json& node) {
@@ -192,11 +192,11 @@ void read_objects(Reading& reading) {
   const json* section = member(reading.document, "objects");
   if (section == nullptr || !section->is_object()) return;
   for (const auto& [name, node] : section->items()) read_object(reading, name, node);
-  if (reading.profile.objects.size() > kMaxObjects)
-    reading.fault("/objects", "more than " + std::to_string(kMaxObjects) + " objects");
+  if (reading.profile.objects.size() > model::kMaxObjects)
+    reading.fault("/objects", "more than " + std::to_string(model::kMaxObjects) + " objects");
   for (const Object& object : reading.profile.objects) {
     check_alias(reading, object);
-    if (object.slot == bus::kNoAxis) continue;
+    if (object.slot == kNoAxis) continue;
     const std::string shared = object.name.substr(object.name.find('.') + 1);
     if (std::any_of(reading.profile.objects.begin(), reading.profile.objects.end(),
                     [&](const Object& o) { return o.name == shared; }))
@@ -206,4 +206,4 @@ void read_objects(Reading& reading) {
   check_addresses(reading);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

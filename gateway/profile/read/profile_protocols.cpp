@@ -7,7 +7,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -17,7 +17,7 @@ constexpr std::int64_t kDefaultTimeoutMs = 100;
 constexpr std::int64_t kFirstErrorFunction = 0x80, kLastErrorFunction = 0xFF;  // bit 7 is what makes it one
 
 /// Ranges of registers without holes, in their order.
-void read_runs(Reading& reading, const json& node, const std::string& pointer, RtuProperties& out) {
+void read_runs(Reading& reading, const json& node, const std::string& pointer, model::RtuProperties& out) {
   const json* runs = member(node, "runs");
   if (runs == nullptr || !runs->is_array()) return;
   std::int64_t before = -1;
@@ -117,13 +117,14 @@ std::int64_t registers_of(const Object& object, const Place& place) {
 
 /// A resynchronisation read longer than its object must lie where nothing is missing, so far as the profile says where
 /// that is.
-bool within_a_run(const RtuProperties& rtu, std::int64_t first, std::int64_t count) {
+bool within_a_run(const model::RtuProperties& rtu, std::int64_t first, std::int64_t count) {
   return rtu.runs.empty() || std::any_of(rtu.runs.begin(), rtu.runs.end(), [&](const auto& run) {
            return first >= run.first && first + count - 1 <= run.second;
          });
 }
 
-void check_counts(Reading& reading, const RtuProperties& rtu, const ResyncSpec& resync, const std::string& pointer) {
+void check_counts(Reading& reading, const model::RtuProperties& rtu, const ResyncSpec& resync,
+                  const std::string& pointer) {
   const Object* object = reading.profile.find(resync.name, 0);
   const Place* place = object == nullptr ? nullptr : place_on(*object, "modbus-rtu");
   for (const std::int64_t count : resync.counts) {
@@ -131,7 +132,7 @@ void check_counts(Reading& reading, const RtuProperties& rtu, const ResyncSpec& 
       reading.fault(pointer, "reads " + std::to_string(count) + " registers, more than max_registers, " +
                                  std::to_string(rtu.max_registers));
     if (place == nullptr) continue;  // told by check_resync()
-    const std::int64_t own = registers_of(*object, *place);
+    const std::int64_t own = profile::registers_of(*object, *place);
     if (count < own) reading.fault(pointer, "reads only half of object \"" + object->name + "\"");
     if (count > own && !within_a_run(rtu, place->address.index, count))
       reading.fault(pointer, std::to_string(count) + " registers from " + std::to_string(place->address.index) +
@@ -142,7 +143,7 @@ void check_counts(Reading& reading, const RtuProperties& rtu, const ResyncSpec& 
 void check_registers(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer) {
   for (const Object& object : reading.profile.objects) {
     const Place* place = place_on(object, "modbus-rtu");
-    if (place == nullptr || registers_of(object, *place) <= protocol.rtu.max_registers) continue;
+    if (place == nullptr || profile::registers_of(object, *place) <= protocol.rtu.max_registers) continue;
     reading.fault(pointer_to(pointer, "max_registers"), "must be at least 2: object \"" + object.name + "\" takes two");
     break;
   }
@@ -158,10 +159,10 @@ void check_registers(Reading& reading, const ProtocolSpec& protocol, const std::
 }
 
 /// Values of one answer are no two reads.
-bus::ObjectAddress asked_for(bus::ObjectAddress address) { return {address.index, address.sub, 0}; }
+ObjectAddress asked_for(ObjectAddress address) { return {address.index, address.sub, 0}; }
 
 void check_resync(Reading& reading, const std::string& name, const ProtocolSpec& protocol, const std::string& pointer) {
-  std::set<bus::ObjectAddress> addresses;
+  std::set<ObjectAddress> addresses;
   for (std::size_t i = 0; i < protocol.resync.size(); ++i) {
     const std::string at = pointer_to(pointer_to(pointer, "resynchronisation"), i);
     const std::string& wanted = protocol.resync[i].name;
@@ -217,4 +218,4 @@ void check_protocols(Reading& reading) {
   }
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,17 +4,17 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
 namespace {
 
-std::optional<PollClass> poll_named(const std::string& name) {
-  if (name == "fast") return PollClass::fast;
-  if (name == "normal") return PollClass::normal;
-  if (name == "slow") return PollClass::slow;
-  if (name == "once") return PollClass::once;
+std::optional<model::PollClass> poll_named(const std::string& name) {
+  if (name == "fast") return model::PollClass::fast;
+  if (name == "normal") return model::PollClass::normal;
+  if (name == "slow") return model::PollClass::slow;
+  if (name == "once") return model::PollClass::once;
   return std::nullopt;
 }
 
@@ -75,7 +75,7 @@ void check_unit(Reading& reading, const QuantitySpec& spec, const Object& object
     return;
   }
   const auto unit = reading.profile.units.find(name);
-  if (unit != reading.profile.units.end() && kind_of(unit->second.base) != kind)
+  if (unit != reading.profile.units.end() && model::kind_of(unit->second.base) != kind)
     reading.fault(spec.pointer, "unit \"" + name + "\" does not fit \"" + quantity + "\", whose registers count in " +
                                     std::string(unit_text(kind)));
 }
@@ -112,8 +112,8 @@ void read_limits(Reading& reading, const json& node, QuantitySpec& out) {
   out.min = reading.amount((*limits)[0], pointer_to(pointer, 0));
   out.max = reading.amount((*limits)[1], pointer_to(pointer, 1));
   const Kind kind = row(out.quantity).kind;
-  for (const std::optional<Amount>& limit : {out.min, out.max})
-    if (limit && kind_of(limit->base) != kind)
+  for (const std::optional<model::Amount>& limit : {out.min, out.max})
+    if (limit && model::kind_of(limit->base) != kind)
       reading.fault(pointer, "the limits are in a unit that does not fit the quantity");
   const auto* low = out.min ? std::get_if<Rational>(&out.min->number) : nullptr;
   const auto* high = out.max ? std::get_if<Rational>(&out.max->number) : nullptr;
@@ -149,4 +149,4 @@ void read_quantities(Reading& reading) {
   }
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

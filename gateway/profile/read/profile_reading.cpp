@@ -5,7 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -22,7 +22,7 @@ void Reading::fault(const std::string& pointer, std::string message) {
 
 bool Reading::names_object(const std::string& object, const std::string& pointer) {
   for (std::size_t slot = 0; slot < axes(); ++slot) {
-    if (profile.find(object, static_cast<bus::AxisSlot>(slot)) != nullptr) continue;
+    if (profile.find(object, static_cast<AxisSlot>(slot)) != nullptr) continue;
     std::vector<std::string> known;
     for (const Object& candidate : profile.objects) known.push_back(candidate.name);
     const bool some =
@@ -97,10 +97,12 @@ std::optional<DataType> type_named(std::string_view name) {
   return std::nullopt;
 }
 
-Nvm nvm_named(std::string_view name) { return name == "no" ? Nvm::no : name == "yes" ? Nvm::yes : Nvm::unknown; }
+model::Nvm nvm_named(std::string_view name) {
+  return name == "no" ? model::Nvm::no : name == "yes" ? model::Nvm::yes : model::Nvm::unknown;
+}
 
-bool waits_for_drive(const Profile& profile, const Unit& unit) {
-  const auto waits = [&](const Factor& factor) {
+bool waits_for_drive(const Profile& profile, const model::Unit& unit) {
+  const auto waits = [&](const model::Factor& factor) {
     const auto* name = std::get_if<std::string>(&factor);
     const auto constant = name == nullptr ? profile.constants.end() : profile.constants.find(*name);
     return constant != profile.constants.end() && constant->second.from_drive;
@@ -110,4 +112,4 @@ bool waits_for_drive(const Profile& profile, const Unit& unit) {
 
 std::string range_text(const Range& range) { return std::to_string(range.min) + " to " + std::to_string(range.max); }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

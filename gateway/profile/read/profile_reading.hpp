@@ -14,7 +14,7 @@
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/read/profile.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 /// The last address of a Modbus register.
 inline constexpr std::int64_t kLastRegister = 0xFFFF;
@@ -38,7 +38,7 @@ class Reading {
   void each_meaning(const std::string& name, Check&& check) const {
     const Object* last = nullptr;
     for (std::size_t slot = 0; slot < axes(); ++slot) {
-      const Object* object = profile.find(name, static_cast<bus::AxisSlot>(slot));
+      const Object* object = profile.find(name, static_cast<AxisSlot>(slot));
       if (object != nullptr && object != last) check(*object);
       last = object;
     }
@@ -51,7 +51,7 @@ class Reading {
   [[nodiscard]] ConditionSpec condition(const nlohmann::json& node, const std::string& object,
                                         const std::string& pointer);
   /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
-  [[nodiscard]] std::optional<Amount> amount(const nlohmann::json& node, const std::string& pointer);
+  [[nodiscard]] std::optional<model::Amount> amount(const nlohmann::json& node, const std::string& pointer);
 
  private:
   void by_constant(const nlohmann::json& node, std::int64_t mask, const std::string& pointer, ConditionSpec& out);
@@ -69,9 +69,9 @@ class Reading {
 [[nodiscard]] inline Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
 [[nodiscard]] std::vector<std::string> names_in(const nlohmann::json& node, std::string_view key);
 [[nodiscard]] std::optional<DataType> type_named(std::string_view name);
-[[nodiscard]] Nvm nvm_named(std::string_view name);
+[[nodiscard]] model::Nvm nvm_named(std::string_view name);
 /// The unit counts by a constant that is read from the drive: nothing can be converted by it before that.
-[[nodiscard]] bool waits_for_drive(const Profile& profile, const Unit& unit);
+[[nodiscard]] bool waits_for_drive(const Profile& profile, const model::Unit& unit);
 [[nodiscard]] std::string range_text(const Range& range);
 /// What an axis in this mode follows; none: no single quantity.
 [[nodiscard]] std::optional<Quantity> setpoint_of(std::int16_t mode);
@@ -135,4 +135,4 @@ void check_stops_start_nothing(Reading& reading);
 /// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
 [[nodiscard]] WriteSpec read_write(Reading& reading, const nlohmann::json& node, const std::string& pointer);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

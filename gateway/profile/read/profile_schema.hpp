@@ -6,8 +6,8 @@
 
 #include <string_view>
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 [[nodiscard]] std::string_view profile_schema_text();
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

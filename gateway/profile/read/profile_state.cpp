@@ -7,7 +7,7 @@
 #include "gateway/model/cia402.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -39,7 +39,7 @@ void check_cia402(Reading& reading, const json& node) {
 void read_makers_facts(Reading& reading, const json& node, StateSpec& out) {
   if (const json* bits = member(node, "follow_bits"))
     out.follow_bits = static_cast<std::uint16_t>(whole(*bits).value_or(0));
-  if (out.follow_bits && (*out.follow_bits & ~std::uint32_t{controlword::kMaker}) != 0)
+  if (out.follow_bits && (*out.follow_bits & ~std::uint32_t{model::controlword::kMaker}) != 0)
     reading.fault("/state/follow_bits", "names bits that CiA 402 gives a meaning: it leaves 0xF800 to the makers");
   if (member(node, "velocity_lag_ms") != nullptr)
     out.velocity_lag = std::chrono::milliseconds(whole_in(node, "velocity_lag_ms", 0));
@@ -70,9 +70,9 @@ void check_virtual(Reading& reading, const json& node) {
   if (reading.profile.state.gate_only && ends == "torque_off")
     reading.fault("/state/quick_stop_ends", "excludes \"gate_only\": a bus that cannot take the torque away");
   constexpr std::size_t kEmulatedPerAxis = 3;
-  if (reading.profile.objects.size() + kEmulatedPerAxis * reading.axes() > kMaxObjects)
+  if (reading.profile.objects.size() + kEmulatedPerAxis * reading.axes() > model::kMaxObjects)
     reading.fault("/objects", "too many: the gateway makes " + std::to_string(kEmulatedPerAxis) +
-                                  " more for each axis, and all together may be " + std::to_string(kMaxObjects));
+                                  " more for each axis, and all together may be " + std::to_string(model::kMaxObjects));
 }
 
 void read_zeroes(Reading& reading, StateSpec& out) {
@@ -226,4 +226,4 @@ void check_state_places(Reading& reading) {
   }
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -5,7 +5,7 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
@@ -38,8 +38,9 @@ void read_constant(Reading& reading, const std::string& name, const json& node) 
   reading.profile.constants.emplace(name, std::move(out));
 }
 
-std::vector<Factor> factors(Reading& reading, const json& node, std::string_view key, const std::string& pointer) {
-  std::vector<Factor> out;
+std::vector<model::Factor> factors(Reading& reading, const json& node, std::string_view key,
+                                   const std::string& pointer) {
+  std::vector<model::Factor> out;
   const json* list = member(node, key);
   if (list == nullptr || !list->is_array()) return out;
   for (std::size_t i = 0; i < list->size(); ++i) {
@@ -63,7 +64,7 @@ std::vector<Factor> factors(Reading& reading, const json& node, std::string_view
 }
 
 /// What a rule of a drive's constant is made of: a number, an object, or a constant that is known beforehand.
-Factor operand_in(Reading& reading, const json& node, const std::string& pointer) {
+model::Factor operand_in(Reading& reading, const json& node, const std::string& pointer) {
   if (const std::optional<std::int64_t> number = whole(node)) return Rational(*number);
   if (!node.is_string()) return Rational(1);
   const std::string name = node;
@@ -148,12 +149,12 @@ void read_units(Reading& reading) {
   if (section == nullptr || !section->is_object()) return;
   for (const auto& [name, node] : section->items()) {
     const std::string pointer = pointer_to("/units", name);
-    Unit out;
-    out.base = base_named(text_in(node, "base")).value_or(Base::rpm);
+    model::Unit out;
+    out.base = model::base_named(text_in(node, "base")).value_or(model::Base::rpm);
     out.mul = factors(reading, node, "mul", pointer);
     out.div = factors(reading, node, "div", pointer);
     reading.profile.units.emplace(name, std::move(out));
   }
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -6,20 +6,20 @@
 
 #include "gateway/profile/read/profile_reading.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 using nlohmann::json;
 
-std::optional<Amount> Reading::amount(const json& node, const std::string& pointer) {
+std::optional<model::Amount> Reading::amount(const json& node, const std::string& pointer) {
   if (!node.is_string()) return std::nullopt;
   std::string_view text = node.get_ref<const std::string&>();
-  Amount out;
+  model::Amount out;
   out.negative = text.starts_with('-');
   if (out.negative) text.remove_prefix(1);
   const std::size_t space = text.find(' ');
   if (space == std::string_view::npos) return std::nullopt;
   const std::string number(text.substr(0, space));
-  const std::optional<Base> base = base_named(text.substr(space + 1));
+  const std::optional<model::Base> base = model::base_named(text.substr(space + 1));
   if (!base) {
     fault(pointer,
           "unknown unit in \"" + node.get<std::string>() + "\": use rpm, rps, rpm/s, rps/s, rev, Arms, %, degC or V");
@@ -43,7 +43,7 @@ std::optional<Amount> Reading::amount(const json& node, const std::string& point
 std::vector<ValueSpec> Reading::values(const json& node, const std::string& pointer) {
   if (const std::optional<std::int64_t> literal = whole(node)) return {*literal};
   if (node.is_string()) {
-    if (std::optional<Amount> found = amount(node, pointer)) return {*found};
+    if (std::optional<model::Amount> found = amount(node, pointer)) return {*found};
     return {};
   }
   if (const json* name = member(node, "quantity"); name != nullptr && name->is_string()) {
@@ -79,17 +79,17 @@ void Reading::value_fits(const ValueSpec& value, const Object& object, const std
     return;
   }
   const std::string& named = object.unit;
-  if (const auto* amount = std::get_if<Amount>(&value)) {
+  if (const auto* amount = std::get_if<model::Amount>(&value)) {
     const auto unit = profile.units.find(named);
     if (unit == profile.units.end())
       fault(pointer, "object \"" + object.name + "\" has no unit: give the raw number");
-    else if (kind_of(unit->second.base) != kind_of(amount->base))
+    else if (model::kind_of(unit->second.base) != model::kind_of(amount->base))
       fault(pointer, "this unit does not fit unit \"" + named + "\" of object \"" + object.name + "\"");
   }
 }
 
 void Reading::value_known(const ValueSpec& value, const Object& object, const std::string& pointer) {
-  if (!std::holds_alternative<Amount>(value)) return;
+  if (!std::holds_alternative<model::Amount>(value)) return;
   const auto unit = profile.units.find(object.unit);
   if (unit != profile.units.end() && waits_for_drive(profile, unit->second))
     fault(pointer,
@@ -113,11 +113,11 @@ void Reading::by_constant(const json& node, std::int64_t mask, const std::string
 }
 
 ConditionSpec Reading::condition(const json& node, const std::string& object, const std::string& pointer) {
-  static constexpr std::array<std::pair<const char*, Condition::Test>, 4> kTests{{
-      {"equals", Condition::Test::equals},
-      {"not_equals", Condition::Test::not_equals},
-      {"in", Condition::Test::in},
-      {"not_in", Condition::Test::not_in},
+  static constexpr std::array<std::pair<const char*, model::Condition::Test>, 4> kTests{{
+      {"equals", model::Condition::Test::equals},
+      {"not_equals", model::Condition::Test::not_equals},
+      {"in", model::Condition::Test::in},
+      {"not_in", model::Condition::Test::not_in},
   }};
   ConditionSpec out;
   out.object = object;
@@ -157,4 +157,4 @@ ConditionSpec Reading::condition(const json& node, const std::string& object, co
   return out;
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

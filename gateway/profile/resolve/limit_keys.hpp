@@ -7,9 +7,9 @@
 
 #include "gateway/model/model.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 /// Empty: none does.
 [[nodiscard]] std::string_view limit_key(Quantity quantity);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

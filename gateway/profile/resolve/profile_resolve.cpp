@@ -8,7 +8,7 @@
 #include "gateway/profile/read/profile_reading.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 void check_protocol(Resolving& r) {
@@ -29,17 +29,17 @@ std::string why_no_more(const Profile& profile, const std::string& name, const C
 
 }  // namespace
 
-ObjectId Resolving::id(std::string_view name, bus::AxisSlot slot) const {
+model::ObjectId Resolving::id(std::string_view name, AxisSlot slot) const {
   const Object* object = profile.find(name, motor(slot));
-  if (object == nullptr) return kNoObject;
+  if (object == nullptr) return model::kNoObject;
   const auto at = ids.find(object->name);
-  return at == ids.end() ? kNoObject : at->second;
+  return at == ids.end() ? model::kNoObject : at->second;
 }
 
-std::optional<Condition> Resolving::condition(const ConditionSpec& spec, bus::AxisSlot slot) const {
-  Condition out;
+std::optional<model::Condition> Resolving::condition(const ConditionSpec& spec, AxisSlot slot) const {
+  model::Condition out;
   out.object = id(spec.object, slot);
-  if (out.object == kNoObject) return std::nullopt;
+  if (out.object == model::kNoObject) return std::nullopt;
   out.mask = spec.mask;
   out.test = spec.test;
   out.values = spec.values;
@@ -52,41 +52,41 @@ std::optional<Condition> Resolving::condition(const ConditionSpec& spec, bus::Ax
 }
 
 std::optional<std::int64_t> Resolving::raw(const std::vector<ValueSpec>& values, std::string_view name,
-                                           bus::AxisSlot slot) const {
+                                           AxisSlot slot) const {
   const std::size_t which = values.size() > 1 && motor(slot) < values.size() ? motor(slot) : 0;
   const ValueSpec& value = values.at(which);
   if (const auto* literal = std::get_if<std::int64_t>(&value)) return *literal;
   const Object* object = profile.find(name, motor(slot));
-  if (object == nullptr || !std::holds_alternative<Amount>(value)) return std::nullopt;
+  if (object == nullptr || !std::holds_alternative<model::Amount>(value)) return std::nullopt;
   // Units per revolution cancel out here: any number will do.
   const Rational per_rev(1);
-  const Unit& unit = profile.units.find(object->unit)->second;
-  const std::optional<Rational> registers = in_registers(std::get<Amount>(value), constants, per_rev);
-  const std::optional<Rational> scale = raw_per_base(unit, constants);
+  const model::Unit& unit = profile.units.find(object->unit)->second;
+  const std::optional<Rational> registers = model::in_registers(std::get<model::Amount>(value), constants, per_rev);
+  const std::optional<Rational> scale = model::raw_per_base(unit, constants);
   if (!registers || !scale) return std::nullopt;
   return (*registers * base_per_register(unit.base, per_rev) * *scale).scale(1);
 }
 
-std::optional<ObjectWrite> Resolving::write(const WriteSpec& spec, bus::AxisSlot slot) const {
-  const ObjectId object = id(spec.object, slot);
-  if (object == kNoObject) return std::nullopt;
+std::optional<model::ObjectWrite> Resolving::write(const WriteSpec& spec, AxisSlot slot) const {
+  const model::ObjectId object = id(spec.object, slot);
+  if (object == model::kNoObject) return std::nullopt;
   const std::optional<std::int64_t> value = raw(spec.values, spec.object, slot);
   if (!value) return std::nullopt;
-  return ObjectWrite{object, *value, spec.why};
+  return model::ObjectWrite{object, *value, spec.why};
 }
 
-std::optional<FactoryWrite> Resolving::factory_write(const WriteSpec& spec, bus::AxisSlot slot) {
+std::optional<model::FactoryWrite> Resolving::factory_write(const WriteSpec& spec, AxisSlot slot) {
   const Object* object = profile.find(spec.object, motor(slot));
-  const ObjectId written = id(spec.object, slot);
-  if (object == nullptr || written == kNoObject) return std::nullopt;
-  FactoryWrite out{written, spec.instead_of, {}, {}, spec.why};
+  const model::ObjectId written = id(spec.object, slot);
+  if (object == nullptr || written == model::kNoObject) return std::nullopt;
+  model::FactoryWrite out{written, spec.instead_of, {}, {}, spec.why};
   if (const auto* literal = std::get_if<std::int64_t>(&spec.values.at(0))) {
     out.amount = Rational(*literal);
   } else {
-    const Unit& unit = profile.units.find(object->unit)->second;
+    const model::Unit& unit = profile.units.find(object->unit)->second;
     const Rational per_rev(1);  // units per revolution cancel out here: any number will do
-    const auto registers = in_registers(std::get<Amount>(spec.values.at(0)), constants, per_rev);
-    const std::optional<ScaleRecipe> scale = recipe(unit);
+    const auto registers = model::in_registers(std::get<model::Amount>(spec.values.at(0)), constants, per_rev);
+    const std::optional<model::ScaleRecipe> scale = recipe(unit);
     if (!registers || !scale) return std::nullopt;
     out.amount = *registers * base_per_register(unit.base, per_rev);
     out.recipe = *scale;
@@ -95,25 +95,25 @@ std::optional<FactoryWrite> Resolving::factory_write(const WriteSpec& spec, bus:
   return out;
 }
 
-std::optional<DriveConstant::Operand> Resolving::operand(const Factor& factor) const {
-  if (const std::optional<Rational> number = value_of(factor, constants))
-    return DriveConstant::Operand{kNoObject, *number};
+std::optional<model::DriveConstant::Operand> Resolving::operand(const model::Factor& factor) const {
+  if (const std::optional<Rational> number = model::value_of(factor, constants))
+    return model::DriveConstant::Operand{model::kNoObject, *number};
   const auto& name = std::get<std::string>(factor);
-  const ObjectId object = profile.constants.contains(name) ? kNoObject : id(name, 0);
-  if (object == kNoObject) return std::nullopt;
-  return DriveConstant::Operand{object, Rational(1)};
+  const model::ObjectId object = profile.constants.contains(name) ? model::kNoObject : id(name, 0);
+  if (object == model::kNoObject) return std::nullopt;
+  return model::DriveConstant::Operand{object, Rational(1)};
 }
 
 /// Position in the model, where it is put at its first need. None where it is not read from the drive, or a rule needs
 /// what is not there: a rule left out could make another one true.
 std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
-  const auto named = [&](const DriveConstant& constant) { return constant.name == name; };
+  const auto named = [&](const model::DriveConstant& constant) { return constant.name == name; };
   const auto at = std::find_if(model.constants.begin(), model.constants.end(), named);
   if (at != model.constants.end()) return static_cast<std::size_t>(at - model.constants.begin());
-  DriveConstant out;
+  model::DriveConstant out;
   out.name = name;
   for (const Constant::Rule& spec : profile.constants.find(name)->second.rules) {
-    DriveConstant::Rule rule{spec.conditional, spec.equal, {}, {}, {}, {}};
+    model::DriveConstant::Rule rule{spec.conditional, spec.equal, {}, {}, {}, {}};
     if (spec.conditional) {
       const auto left = operand(spec.left);
       const auto right = operand(spec.right);
@@ -122,7 +122,7 @@ std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
       rule.right = *right;
     }
     for (const auto& [from, to] : {std::pair(&spec.mul, &rule.mul), std::pair(&spec.div, &rule.div)}) {
-      for (const Factor& factor : *from) {
+      for (const model::Factor& factor : *from) {
         const auto one = operand(factor);
         if (!one) return std::nullopt;
         to->push_back(*one);
@@ -135,10 +135,10 @@ std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
   return model.constants.size() - 1;
 }
 
-std::optional<ScaleRecipe> Resolving::recipe(const Unit& unit) {
-  ScaleRecipe out;
-  const auto add = [&](const Factor& factor, bool divides) {
-    if (const std::optional<Rational> value = value_of(factor, constants)) {
+std::optional<model::ScaleRecipe> Resolving::recipe(const model::Unit& unit) {
+  model::ScaleRecipe out;
+  const auto add = [&](const model::Factor& factor, bool divides) {
+    if (const std::optional<Rational> value = model::value_of(factor, constants)) {
       if (divides && value->numerator() == 0) return false;
       out.fixed = divides ? out.fixed / *value : out.fixed * *value;
       return true;
@@ -147,19 +147,20 @@ std::optional<ScaleRecipe> Resolving::recipe(const Unit& unit) {
     if (at) (divides ? out.div : out.mul).push_back(*at);
     return at.has_value();
   };
-  const auto all = [&](const std::vector<Factor>& factors, bool divides) {
-    return std::all_of(factors.begin(), factors.end(), [&](const Factor& factor) { return add(factor, divides); });
+  const auto all = [&](const std::vector<model::Factor>& factors, bool divides) {
+    return std::all_of(factors.begin(), factors.end(),
+                       [&](const model::Factor& factor) { return add(factor, divides); });
   };
   if (!all(unit.mul, false) || !all(unit.div, true)) return std::nullopt;  // a constant nobody gave
   return out;
 }
 
-std::vector<std::string> Resolving::missing(const Unit& unit) {
+std::vector<std::string> Resolving::missing(const model::Unit& unit) {
   std::vector<std::string> out;
   for (const auto* factors : {&unit.mul, &unit.div})
-    for (const Factor& factor : *factors)
+    for (const model::Factor& factor : *factors)
       if (const auto* name = std::get_if<std::string>(&factor))
-        if (!value_of(factor, constants) && !drive_constant(*name)) out.push_back(*name);
+        if (!model::value_of(factor, constants) && !drive_constant(*name)) out.push_back(*name);
   return out;
 }
 
@@ -201,11 +202,11 @@ void resolve_objects(Resolving& r) {
     const auto place = object.places.find(r.input.protocol);
     if (place == object.places.end()) continue;
     const Place& at = place->second;
-    const bus::AxisSlot axis = object.slot == bus::kNoAxis ? bus::kNoAxis : r.axis_of(object.slot);
+    const AxisSlot axis = object.slot == kNoAxis ? kNoAxis : r.axis_of(object.slot);
     // Of a motor that is no axis only what travels with the others' is needed.
-    if (object.slot != bus::kNoAxis && axis == bus::kNoAxis && !at.composed) continue;
+    if (object.slot != kNoAxis && axis == kNoAxis && !at.composed) continue;
     const DataType type = object.type_at(at);
-    ObjectDef def;
+    model::ObjectDef def;
     def.name = object.name;
     def.slot = axis;
     def.address = at.address;
@@ -220,12 +221,12 @@ void resolve_objects(Resolving& r) {
     def.any_width = object.any_width && r.input.protocol == "canopen";
     def.mailbox_reads_only = object.mailbox_reads_only;
     def.nvm = object.nvm;
-    r.ids.emplace(object.name, static_cast<ObjectId>(r.model.objects.size()));
+    r.ids.emplace(object.name, static_cast<model::ObjectId>(r.model.objects.size()));
     r.model.objects.push_back(std::move(def));
   }
 }
 
-std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded, const ResolveInput& input) {
+std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded, const ResolveInput& input) {
   Resolving r(loaded.profile, input);
   if (!loaded.faults.empty()) {
     r.fault("/profile", "profile \"" + loaded.file + "\" has mistakes of its own");
@@ -243,7 +244,7 @@ std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded
   try {
     resolve_objects(r);
     for (std::size_t i = 0; i < input.axes.size(); ++i) {
-      const auto slot = static_cast<bus::AxisSlot>(i);
+      const auto slot = static_cast<AxisSlot>(i);
       r.model.axes.emplace_back();
       if (r.profile.state.is_virtual) make_objects(r, slot);
       resolve_quantities(r, slot);
@@ -259,4 +260,4 @@ std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded
   return std::move(r.model);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

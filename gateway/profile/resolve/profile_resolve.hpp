@@ -13,7 +13,7 @@
 
 #include "gateway/profile/read/profile_loader.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 /// An axis of the configuration, in register units (design 2).
 struct ResolveAxis {
@@ -47,7 +47,7 @@ struct ResolveInput {
 
 /// Faults point into the drive's entry of the configuration ("/constants/peak_current_a", "/axes/0/limits/velocity",
 /// ""), and their `file` is empty: the caller knows both. `loaded.faults` must be empty.
-[[nodiscard]] std::variant<DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded,
-                                                                   const ResolveInput& input);
+[[nodiscard]] std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded,
+                                                                          const ResolveInput& input);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,7 +4,7 @@
 
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 using std::chrono::milliseconds;
@@ -13,18 +13,18 @@ using std::chrono::milliseconds;
 constexpr int kHeartbeatsBeforeLoss = 3;
 
 /// For all axes, or the drive's own: what an object of this name is on this drive, each once.
-std::vector<ObjectId> meanings(const Resolving& r, const std::string& name) {
-  std::vector<ObjectId> out;
+std::vector<model::ObjectId> meanings(const Resolving& r, const std::string& name) {
+  std::vector<model::ObjectId> out;
   for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
-    const ObjectId id = r.id(name, static_cast<bus::AxisSlot>(i));
-    if (id != kNoObject && std::find(out.begin(), out.end(), id) == out.end()) out.push_back(id);
+    const model::ObjectId id = r.id(name, static_cast<AxisSlot>(i));
+    if (id != model::kNoObject && std::find(out.begin(), out.end(), id) == out.end()) out.push_back(id);
   }
   return out;
 }
 
 /// Written at bring-up, and what no_comm_watchdog is judged by.
 void hold(Resolving& r, const std::string& name, std::int64_t raw, const std::string& why) {
-  for (const ObjectId id : meanings(r, name)) {
+  for (const model::ObjectId id : meanings(r, name)) {
     r.model.setup.push_back({id, raw, why});
     r.model.loss_objects.push_back(id);
   }
@@ -33,7 +33,7 @@ void hold(Resolving& r, const std::string& name, std::int64_t raw, const std::st
 void resolve_mapping(Resolving& r, const CanopenSpec& spec) {
   r.model.canopen.unused_tpdos = spec.unused_tpdos;
   for (const CanopenSpec::Tpdo& tpdo : spec.tpdos) {
-    TpdoProperties out;
+    model::TpdoProperties out;
     out.number = tpdo.number;
     out.type = tpdo.type;
     out.inhibit = tpdo.inhibit;
@@ -50,10 +50,10 @@ void resolve_mapping(Resolving& r, const CanopenSpec& spec) {
 }
 
 void resolve_loss(Resolving& r, const LossSpec& loss, const CanopenSpec& spec) {
-  CanopenProperties& facts = r.model.canopen;
+  model::CanopenProperties& facts = r.model.canopen;
   if (loss.by == LossSpec::By::heartbeat_consumer) {
     facts.own_heartbeat = loss.after / kHeartbeatsBeforeLoss;
-    hold(r, loss.object, std::int64_t{kOwnNode} << 16 | loss.after / milliseconds(1),
+    hold(r, loss.object, std::int64_t{model::kOwnNode} << 16 | loss.after / milliseconds(1),
          "the drive notices when the gateway's heartbeat stays away");
   } else if (loss.by == LossSpec::By::life_guarding) {
     hold(r, spec.guard_time_object, spec.guard_time / milliseconds(1), "the gateway guards the node so often");
@@ -66,7 +66,7 @@ void resolve_loss(Resolving& r, const LossSpec& loss, const CanopenSpec& spec) {
 
 void resolve_canopen(Resolving& r, const ProtocolSpec& protocol) {
   const CanopenSpec& spec = protocol.canopen;
-  CanopenProperties& facts = r.model.canopen;
+  model::CanopenProperties& facts = r.model.canopen;
   facts.heartbeat = spec.heartbeat;
   facts.guard_time = spec.guard_time;
   facts.life_factor = spec.life_factor;
@@ -79,4 +79,4 @@ void resolve_canopen(Resolving& r, const ProtocolSpec& protocol) {
   resolve_loss(r, protocol.loss, spec);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,7 +4,7 @@
 
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 /// The mode and the quantities a command cannot do without.
@@ -32,30 +32,30 @@ Needs needs_of(Command command, bool is_virtual) {
   }
 }
 
-bool has_mode(const AxisModel& axis, std::int16_t mode) {
+bool has_mode(const model::AxisModel& axis, std::int16_t mode) {
   return std::any_of(axis.modes.begin(), axis.modes.end(), [&](const auto& row) { return row.first == mode; });
 }
 
-std::optional<Steps> steps_from(const Resolving& r, const std::vector<StepSpec>& specs, bus::AxisSlot slot) {
-  Steps out;
+std::optional<model::Steps> steps_from(const Resolving& r, const std::vector<StepSpec>& specs, AxisSlot slot) {
+  model::Steps out;
   for (const StepSpec& spec : specs) {
-    Step step;
+    model::Step step;
     step.verb = spec.verb;
     step.object = r.id(spec.object, slot);
-    if (step.object == kNoObject) return std::nullopt;
+    if (step.object == model::kNoObject) return std::nullopt;
     step.limit = spec.limit;
     step.optional = spec.optional;
     step.otherwise = spec.otherwise;
-    if (spec.verb != Step::Verb::write) {
-      const std::optional<Condition> until = r.condition(spec.until, slot);
+    if (spec.verb != model::Step::Verb::write) {
+      const std::optional<model::Condition> until = r.condition(spec.until, slot);
       if (!until) return std::nullopt;
       step.until = *until;
     } else if (const auto* quantity = std::get_if<Quantity>(&spec.values.front())) {
-      step.source = Step::Source::quantity;
+      step.source = model::Step::Source::quantity;
       step.quantity = *quantity;
       if (r.model.axes[slot].binding(*quantity) == nullptr) return std::nullopt;
     } else if (std::holds_alternative<SetPositionValue>(spec.values.front())) {
-      step.source = Step::Source::set_position;
+      step.source = model::Step::Source::set_position;
       step.quantity = Quantity::position_actual;
       if (r.model.axes[slot].binding(step.quantity) == nullptr) return std::nullopt;
     } else {
@@ -68,25 +68,25 @@ std::optional<Steps> steps_from(const Resolving& r, const std::vector<StepSpec>&
   return out;
 }
 
-std::optional<CommandDef> command_from(const Resolving& r, const CommandSpec& spec, bus::AxisSlot slot) {
-  const AxisModel& axis = r.model.axes[slot];
+std::optional<model::CommandDef> command_from(const Resolving& r, const CommandSpec& spec, AxisSlot slot) {
+  const model::AxisModel& axis = r.model.axes[slot];
   const Needs needs = needs_of(spec.command, axis.virtual_axis.has_value());
   if (needs.mode != 0 && !has_mode(axis, needs.mode)) return std::nullopt;
   if (std::any_of(needs.quantities.begin(), needs.quantities.end(),
                   [&](Quantity q) { return axis.binding(q) == nullptr; }))
     return std::nullopt;
-  CommandDef out;
+  model::CommandDef out;
   out.zero_only = spec.zero_only;
   out.quick_stop_otherwise = spec.quick_stop_otherwise;
   out.repeat_on_change = spec.repeat_on_change;
   for (const CommandSpec::Variant& variant : spec.variants) {
-    std::optional<Steps> steps = steps_from(r, variant.steps, slot);
+    std::optional<model::Steps> steps = steps_from(r, variant.steps, slot);
     if (steps)
       out.variants.push_back({variant.modes, std::move(*steps)});
     else if (!spec.quick_stop_otherwise)
       return std::nullopt;
   }
-  std::optional<Steps> steps = steps_from(r, spec.steps, slot);
+  std::optional<model::Steps> steps = steps_from(r, spec.steps, slot);
   if (!steps) return std::nullopt;
   out.steps = std::move(*steps);
   return out;
@@ -104,8 +104,8 @@ const CommandSpec* spec_for(const Profile& profile, Command command, const std::
 
 }  // namespace
 
-void resolve_commands(Resolving& r, bus::AxisSlot slot) {
-  AxisModel& axis = r.model.axes[slot];
+void resolve_commands(Resolving& r, AxisSlot slot) {
+  model::AxisModel& axis = r.model.axes[slot];
   for (std::uint8_t number = 1; number <= kLastCommand; ++number) {
     const auto command = static_cast<Command>(number);
     const CommandSpec* spec = spec_for(r.profile, command, r.input.protocol);
@@ -122,4 +122,4 @@ void resolve_commands(Resolving& r, bus::AxisSlot slot) {
   }
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,20 +4,20 @@
 
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 void resolve_checks(Resolving& r) {
   for (const CheckSpec& spec : r.profile.checks) {
-    std::vector<ObjectId> seen;
+    std::vector<model::ObjectId> seen;
     for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
-      const auto slot = static_cast<bus::AxisSlot>(i);
-      std::optional<Condition> bad = r.condition(spec.bad, slot);
+      const auto slot = static_cast<AxisSlot>(i);
+      std::optional<model::Condition> bad = r.condition(spec.bad, slot);
       if (!bad || std::find(seen.begin(), seen.end(), bad->object) != seen.end()) continue;
       seen.push_back(bad->object);
-      Check out{spec.name, std::move(*bad), spec.alarm, r.model.object(seen.back()).slot, spec.text, {}};
+      model::Check out{spec.name, std::move(*bad), spec.alarm, r.model.object(seen.back()).slot, spec.text, {}};
       for (const WriteSpec& write : spec.remedy)
-        if (const std::optional<ObjectWrite> one = r.write(write, slot)) out.remedy.push_back(*one);
+        if (const std::optional<model::ObjectWrite> one = r.write(write, slot)) out.remedy.push_back(*one);
       if (out.remedy.size() != spec.remedy.size()) out.remedy.clear();  // half a remedy is none
       r.model.checks.push_back(std::move(out));
     }
@@ -26,9 +26,9 @@ void resolve_checks(Resolving& r) {
 
 template <class Make, class Write>
 void add_for_each_axis(const Resolving& r, Make make, std::vector<Write>& out) {
-  std::vector<ObjectId> seen;
+  std::vector<model::ObjectId> seen;
   for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
-    const std::optional<Write> write = make(static_cast<bus::AxisSlot>(i));
+    const std::optional<Write> write = make(static_cast<AxisSlot>(i));
     if (!write || std::find(seen.begin(), seen.end(), write->object) != seen.end()) continue;
     seen.push_back(write->object);
     out.push_back(*write);
@@ -40,10 +40,10 @@ void resolve_setup(Resolving& r) {
     if (!spec.on.empty() && std::find(spec.on.begin(), spec.on.end(), r.input.protocol) == spec.on.end()) continue;
     if (spec.instead_of.empty())
       add_for_each_axis(
-          r, [&](bus::AxisSlot slot) { return r.write(spec, slot); }, r.model.setup);
+          r, [&](AxisSlot slot) { return r.write(spec, slot); }, r.model.setup);
     else
       add_for_each_axis(
-          r, [&](bus::AxisSlot slot) { return r.factory_write(spec, slot); }, r.model.factory_writes);
+          r, [&](AxisSlot slot) { return r.factory_write(spec, slot); }, r.model.factory_writes);
   }
 }
 
@@ -51,8 +51,8 @@ void resolve_resync(Resolving& r, const ProtocolSpec& protocol) {
   r.model.resync.worst_reply = protocol.worst_reply;
   r.model.resync.by_length = r.input.protocol == "modbus-rtu";
   for (const ResyncSpec& read : protocol.resync) {
-    const ObjectId id = r.id(read.name, 0);
-    if (id == kNoObject) continue;
+    const model::ObjectId id = r.id(read.name, 0);
+    if (id == model::kNoObject) continue;
     if (read.counts.empty()) r.model.resync.candidates.push_back({id, 0});
     for (const std::uint8_t count : read.counts) r.model.resync.candidates.push_back({id, count});
   }
@@ -84,11 +84,11 @@ void resolve_drive(Resolving& r) {
   r.model.nvm = r.profile.nvm;
   resolve_resync(r, protocol);
   for (const AlarmSpec& row : r.profile.alarms)
-    if (r.id(r.profile.fault_words[row.word], 0) != kNoObject)
+    if (r.id(r.profile.fault_words[row.word], 0) != model::kNoObject)
       r.model.alarms.push_back({row.word, row.bit.value_or(0), row.value, row.code, row.text, row.remedy});
   resolve_setup(r);
-  if (is_canopen(r.model)) resolve_canopen(r, protocol);
+  if (model::is_canopen(r.model)) resolve_canopen(r, protocol);
   resolve_checks(r);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

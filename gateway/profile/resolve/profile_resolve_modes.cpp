@@ -6,10 +6,10 @@
 #include "gateway/profile/read/profile_reading.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
-const std::string& mode_constant(const ConfiguredModeSpec& spec, bus::AxisSlot motor) {
+const std::string& mode_constant(const ConfiguredModeSpec& spec, AxisSlot motor) {
   return motor < spec.constants.size() ? spec.constants[motor] : spec.constants.front();
 }
 
@@ -20,7 +20,7 @@ std::string missing_constants(const Resolving& r, const std::vector<const std::s
     const auto unit = r.profile.units.find(*name);
     if (unit == r.profile.units.end()) continue;
     for (const auto* factors : {&unit->second.mul, &unit->second.div})
-      for (const Factor& factor : *factors)
+      for (const model::Factor& factor : *factors)
         if (const auto* constant = std::get_if<std::string>(&factor); constant && !r.constants.contains(*constant))
           out.push_back(*constant);
   }
@@ -28,8 +28,8 @@ std::string missing_constants(const Resolving& r, const std::vector<const std::s
 }
 
 /// A fixed mode whose set-point the gateway cannot give leaves an axis that can do nothing.
-void check_fixed_mode(Resolving& r, bus::AxisSlot slot) {
-  const AxisModel& axis = r.model.axes[slot];
+void check_fixed_mode(Resolving& r, AxisSlot slot) {
+  const model::AxisModel& axis = r.model.axes[slot];
   const auto& spec = r.profile.configured_mode;
   if (!axis.modes.empty() || !spec || !spec->is_fixed_on(r.input.protocol)) return;
   const std::string& name = mode_constant(*spec, r.motor(slot));
@@ -47,14 +47,14 @@ void check_fixed_mode(Resolving& r, bus::AxisSlot slot) {
 
 }  // namespace
 
-bus::AxisSlot Resolving::motor(bus::AxisSlot slot) const { return slot < motors.size() ? motors[slot] : slot; }
+AxisSlot Resolving::motor(AxisSlot slot) const { return slot < motors.size() ? motors[slot] : slot; }
 
-bus::AxisSlot Resolving::axis_of(bus::AxisSlot motor) const {
+AxisSlot Resolving::axis_of(AxisSlot motor) const {
   const auto at = std::find(motors.begin(), motors.end(), motor);
-  return at == motors.end() ? bus::kNoAxis : static_cast<bus::AxisSlot>(at - motors.begin());
+  return at == motors.end() ? kNoAxis : static_cast<AxisSlot>(at - motors.begin());
 }
 
-std::optional<std::int16_t> Resolving::configured_mode(bus::AxisSlot slot) const {
+std::optional<std::int16_t> Resolving::configured_mode(AxisSlot slot) const {
   if (!profile.configured_mode) return std::nullopt;
   const auto value = constants.find(mode_constant(*profile.configured_mode, motor(slot)));
   if (value == constants.end()) return std::nullopt;
@@ -63,14 +63,14 @@ std::optional<std::int16_t> Resolving::configured_mode(bus::AxisSlot slot) const
   return std::nullopt;
 }
 
-bool Resolving::can_have(bus::AxisSlot slot, std::int16_t mode) const {
+bool Resolving::can_have(AxisSlot slot, std::int16_t mode) const {
   const auto& spec = profile.configured_mode;
   if (!spec || configured_mode(slot) == mode) return true;
   return !spec->is_fixed_on(input.protocol) &&
          std::find(spec->only.begin(), spec->only.end(), mode) == spec->only.end();
 }
 
-bool Resolving::can_follow(bus::AxisSlot slot, Quantity setpoint) const {
+bool Resolving::can_follow(AxisSlot slot, Quantity setpoint) const {
   if (!profile.configured_mode) return true;
   bool is_setpoint = false;
   for (const auto& [mode, raw] : profile.modes) {
@@ -92,9 +92,9 @@ void resolve_motors(Resolving& r) {
       r.fault(pointer, "profile \"" + r.profile.name + "\" has no motor \"" + name + "\": it has " + listed(known));
       continue;
     }
-    const auto motor = static_cast<bus::AxisSlot>(at - known.begin());
-    const bus::AxisSlot taken = r.axis_of(motor);
-    if (taken != bus::kNoAxis)
+    const auto motor = static_cast<AxisSlot>(at - known.begin());
+    const AxisSlot taken = r.axis_of(motor);
+    if (taken != kNoAxis)
       r.fault(pointer, "motor \"" + *at + "\"" +
                            (name.empty() ? ", which this axis is by its place in the list," : "") +
                            " is the axis at /axes/" + std::to_string(taken) + " already: give each axis its own motor");
@@ -102,7 +102,7 @@ void resolve_motors(Resolving& r) {
   }
   if (!r.profile.configured_mode || !r.faults.empty()) return;
   for (std::size_t i = 0; i < r.motors.size(); ++i) {
-    if (r.configured_mode(static_cast<bus::AxisSlot>(i))) continue;
+    if (r.configured_mode(static_cast<AxisSlot>(i))) continue;
     std::vector<std::string> numbers;
     for (const auto& [mode, raw] : r.profile.modes) numbers.push_back(std::to_string(raw));
     std::sort(numbers.begin(), numbers.end());
@@ -111,8 +111,8 @@ void resolve_motors(Resolving& r) {
   }
 }
 
-void resolve_modes(Resolving& r, bus::AxisSlot slot) {
-  AxisModel& axis = r.model.axes[slot];
+void resolve_modes(Resolving& r, AxisSlot slot) {
+  model::AxisModel& axis = r.model.axes[slot];
   const auto configured = r.configured_mode(slot);
   for (const auto& [mode, raw] : r.profile.modes) {
     const std::optional<Quantity> setpoint = setpoint_of(mode);
@@ -129,8 +129,9 @@ void resolve_modes(Resolving& r, bus::AxisSlot slot) {
   for (const auto& [mode, name] : keepalive->resend) {
     const bool offered =
         std::any_of(axis.modes.begin(), axis.modes.end(), [&mode = mode](const auto& m) { return m.first == mode; });
-    if (const ObjectId id = r.id(name, slot); offered && id != kNoObject) axis.keep_alive.emplace_back(mode, id);
+    if (const model::ObjectId id = r.id(name, slot); offered && id != model::kNoObject)
+      axis.keep_alive.emplace_back(mode, id);
   }
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -6,12 +6,14 @@
 #include "gateway/profile/resolve/limit_keys.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
 /// Where a write may be repeated by every scan, the drive's own value seldom changes: it is read once and after each
 /// write.
-PollClass default_poll(const QuantityRow& row) { return row.writable ? PollClass::once : PollClass::normal; }
+model::PollClass default_poll(const QuantityRow& row) {
+  return row.writable ? model::PollClass::once : model::PollClass::normal;
+}
 
 /// What an inverted axis negates. Magnitudes (profile_velocity, max_torque) have no direction.
 bool is_directed(const QuantityRow& row) {
@@ -25,8 +27,8 @@ constexpr std::string_view kPosition = "position", kVelocity = "velocity", kAcce
 
 /// A speed, a ramp or a max_torque that the drive would hold as 0 is none: 0 means "leave as it is" (design 3.3 Zeros),
 /// and a drive that is told to slow down at 0, or without torque, may turn on.
-Range numbers_of_write(const QuantityRow& row, const Object& object, const ObjectDef& def) {
-  Range out = intersection(object.numbers(), def.range());
+Range numbers_of_write(const QuantityRow& row, const Object& object, const model::ObjectDef& def) {
+  Range out = model::intersection(object.numbers(), def.range());
   const bool rate = row.type == RegisterType::u32 && (row.kind == Kind::velocity || row.kind == Kind::acceleration);
   const bool torque = row.type == RegisterType::u16 && row.kind == Kind::torque;
   if ((rate || torque) && row.writable) out.min = std::max<std::int64_t>(out.min, 1);
@@ -62,37 +64,38 @@ AxisLimit axis_limit(const ResolveAxis& axis, const QuantityRow& row) {
 
 class AxisQuantities {
  public:
-  AxisQuantities(Resolving& resolving, bus::AxisSlot slot)
+  AxisQuantities(Resolving& resolving, AxisSlot slot)
       : r_(resolving), slot_(slot), axis_(resolving.input.axes[slot]), model_(resolving.model.axes[slot]) {}
 
   void run() {
     model_.binding_of.fill(-1);
     for (const QuantityRow& row : quantity_table())
-      if (std::optional<Binding> binding = bind(row)) add(std::move(*binding));
+      if (std::optional<model::Binding> binding = bind(row)) add(std::move(*binding));
   }
 
  private:
-  std::optional<Binding> bind(const QuantityRow& row) {
+  std::optional<model::Binding> bind(const QuantityRow& row) {
     if (r_.profile.state.is_virtual)
-      if (std::optional<Binding> made = bind_emulated(row)) return made;
+      if (std::optional<model::Binding> made = bind_emulated(row)) return made;
     const QuantitySpec* spec = r_.profile.find(axis_.inverted ? opposite(row.quantity) : row.quantity);
     if (!r_.can_follow(slot_, row.quantity)) return std::nullopt;
     if (spec == nullptr) return row.quantity == Quantity::error_code ? from_alarm_table() : std::nullopt;
-    Binding out;
+    model::Binding out;
     out.quantity = row.quantity;
     out.poll = spec->poll.value_or(default_poll(row));
     out.limits = range_of(row.type);
     if (!spec->bits.empty()) return compose(*spec, std::move(out));
     for (const std::string& name : spec->objects) {
       out.object = r_.id(name, slot_);
-      if (out.object != kNoObject) return scaled(row, *spec, *r_.profile.find(name, r_.motor(slot_)), std::move(out));
+      if (out.object != model::kNoObject)
+        return scaled(row, *spec, *r_.profile.find(name, r_.motor(slot_)), std::move(out));
     }
     return std::nullopt;
   }
 
   /// Statusword, controlword and mode of a virtual axis: the gateway's own objects hold the registers' numbers.
-  std::optional<Binding> bind_emulated(const QuantityRow& row) const {
-    Binding out;
+  std::optional<model::Binding> bind_emulated(const QuantityRow& row) const {
+    model::Binding out;
     out.quantity = row.quantity;
     switch (row.quantity) {
       case Quantity::statusword:
@@ -108,29 +111,29 @@ class AxisQuantities {
       default:
         return std::nullopt;
     }
-    out.poll = row.writable ? PollClass::once : PollClass::fast;
+    out.poll = row.writable ? model::PollClass::once : model::PollClass::fast;
     out.writable = row.writable;
-    out.limits = intersection(range_of(row.type), r_.model.object(out.object).range());
+    out.limits = model::intersection(range_of(row.type), r_.model.object(out.object).range());
     return out;
   }
 
   /// error_code is read from no object where the profile has an alarm table: it follows from the fault words.
-  std::optional<Binding> from_alarm_table() {
+  std::optional<model::Binding> from_alarm_table() {
     const auto there = [&](const AlarmSpec& row) {
-      return r_.id(r_.profile.fault_words[row.word], slot_) != kNoObject;
+      return r_.id(r_.profile.fault_words[row.word], slot_) != model::kNoObject;
     };
     if (!std::any_of(r_.profile.alarms.begin(), r_.profile.alarms.end(), there)) return std::nullopt;
-    Binding out;
+    model::Binding out;
     out.quantity = Quantity::error_code;
     out.limits = range_of(RegisterType::u16);
     return out;
   }
 
-  std::optional<Binding> compose(const QuantitySpec& spec, Binding out) {
+  std::optional<model::Binding> compose(const QuantitySpec& spec, model::Binding out) {
     const bool swaps = axis_.inverted && out.quantity == Quantity::digital_inputs;
     for (const BitsSpec& field : spec.bits) {
-      const ObjectId object = r_.id(field.object, slot_);
-      if (object == kNoObject) continue;  // a bit the drive cannot give is 0
+      const model::ObjectId object = r_.id(field.object, slot_);
+      if (object == model::kNoObject) continue;  // a bit the drive cannot give is 0
       if (!swaps) {
         out.bits.push_back({object, field.from, field.count, field.to, field.inverted});
         continue;
@@ -144,10 +147,11 @@ class AxisQuantities {
     return out.bits.empty() ? std::nullopt : std::optional(std::move(out));
   }
 
-  std::optional<Binding> scaled(const QuantityRow& row, const QuantitySpec& spec, const Object& object, Binding out) {
+  std::optional<model::Binding> scaled(const QuantityRow& row, const QuantitySpec& spec, const Object& object,
+                                       model::Binding out) {
     if (row.kind != Kind::code) {
-      const Unit& unit = r_.profile.units.find(spec.unit_of(object))->second;
-      std::optional<ScaleRecipe> recipe = r_.recipe(unit);
+      const model::Unit& unit = r_.profile.units.find(spec.unit_of(object))->second;
+      std::optional<model::ScaleRecipe> recipe = r_.recipe(unit);
       if (!recipe) {  // not supported, never guessed
         refuse_limit(row, r_.missing(unit));
         return std::nullopt;
@@ -160,7 +164,7 @@ class AxisQuantities {
       else
         out.recipe = std::move(*recipe);
     }
-    const ObjectDef& def = r_.model.object(out.object);
+    const model::ObjectDef& def = r_.model.object(out.object);
     out.writable = row.writable && def.writable;
     // What cannot be read back is no quantity, except where writing is all there is to it.
     if (!out.writable && !def.readable) return std::nullopt;
@@ -187,22 +191,22 @@ class AxisQuantities {
   }
 
   /// A drive that numbers its homing methods otherwise: the register has CiA 402's.
-  void translate(Binding& out) const {
+  void translate(model::Binding& out) const {
     const auto& methods = r_.profile.homing.methods;
     if (std::all_of(methods.begin(), methods.end(), [](const auto& row) { return row.first == row.second; })) return;
     out.codes.assign(methods.begin(), methods.end());
   }
 
-  void limit(const QuantityRow& row, const QuantitySpec& spec, const Object& object, const ObjectDef& def,
-             Binding& out) {
+  void limit(const QuantityRow& row, const QuantitySpec& spec, const Object& object, const model::ObjectDef& def,
+             model::Binding& out) {
     const Range raw = numbers_of_write(row, object, def);
     if (!out.codes.empty())
       out.limits = {out.codes.front().first, out.codes.back().first};
     else if (out.scaled)
-      out.limits = intersection(out.limits, registers_within(raw, out.raw_per_unit));
-    out.limits = intersection(out.limits, profile_limit(spec));
+      out.limits = model::intersection(out.limits, model::registers_within(raw, out.raw_per_unit));
+    out.limits = model::intersection(out.limits, profile_limit(spec));
     const AxisLimit own = axis_limit(axis_, row);
-    const Range allowed = intersection(out.limits, own.range);
+    const Range allowed = model::intersection(out.limits, own.range);
     if (allowed.min > allowed.max)
       r_.fault("/axes/" + std::to_string(slot_) + "/limits/" + own.key,
                "leaves no value for " + std::string(row.name) + ", which this drive takes from " +
@@ -213,16 +217,16 @@ class AxisQuantities {
 
   [[nodiscard]] Range profile_limit(const QuantitySpec& spec) const {
     Range out{INT64_MIN, INT64_MAX};
-    const auto end = [&](const std::optional<Amount>& amount) -> std::optional<Rational> {
-      return amount ? in_registers(*amount, r_.constants, axis_.units_per_rev) : std::nullopt;
+    const auto end = [&](const std::optional<model::Amount>& amount) -> std::optional<Rational> {
+      return amount ? model::in_registers(*amount, r_.constants, axis_.units_per_rev) : std::nullopt;
     };
-    if (const auto low = end(spec.min)) out.min = rounded_up(*low);
-    if (const auto high = end(spec.max)) out.max = rounded_down(*high);
+    if (const auto low = end(spec.min)) out.min = model::rounded_up(*low);
+    if (const auto high = end(spec.max)) out.max = model::rounded_down(*high);
     if (!axis_.inverted || !is_directed(row(spec.quantity))) return out;
     return {out.max == INT64_MAX ? INT64_MIN : -out.max, out.min == INT64_MIN ? INT64_MAX : -out.min};
   }
 
-  void add(Binding binding) {
+  void add(model::Binding binding) {
     model_.binding_of[static_cast<std::size_t>(binding.quantity)] = static_cast<std::int16_t>(model_.bindings.size());
     model_.supported |= bit(binding.quantity);
     if (binding.writable) model_.writable |= bit(binding.quantity);
@@ -230,9 +234,9 @@ class AxisQuantities {
   }
 
   Resolving& r_;
-  bus::AxisSlot slot_;
+  AxisSlot slot_;
   const ResolveAxis& axis_;
-  AxisModel& model_;
+  model::AxisModel& model_;
 };
 
 }  // namespace
@@ -263,6 +267,6 @@ std::string_view limit_key(Quantity quantity) {
   }
 }
 
-void resolve_quantities(Resolving& resolving, bus::AxisSlot slot) { AxisQuantities(resolving, slot).run(); }
+void resolve_quantities(Resolving& resolving, AxisSlot slot) { AxisQuantities(resolving, slot).run(); }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

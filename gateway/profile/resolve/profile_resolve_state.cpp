@@ -5,11 +5,11 @@
 
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
-ObjectId make_object(Resolving& r, bus::AxisSlot slot, const std::string& name, DataType type, bool writable) {
-  ObjectDef def;
+model::ObjectId make_object(Resolving& r, AxisSlot slot, const std::string& name, DataType type, bool writable) {
+  model::ObjectDef def;
   def.name = r.profile.axes.size() > 1 ? r.profile.axes[r.motor(slot)] + "." + name : name;
   def.slot = slot;
   def.size = type.size;
@@ -17,16 +17,16 @@ ObjectId make_object(Resolving& r, bus::AxisSlot slot, const std::string& name, 
   def.writable = writable;
   def.emulated = true;
   r.model.objects.push_back(std::move(def));
-  return static_cast<ObjectId>(r.model.objects.size() - 1);
+  return static_cast<model::ObjectId>(r.model.objects.size() - 1);
 }
 
-std::optional<Condition> condition(const Resolving& r, const std::optional<ConditionSpec>& spec, bus::AxisSlot slot) {
+std::optional<model::Condition> condition(const Resolving& r, const std::optional<ConditionSpec>& spec, AxisSlot slot) {
   return spec ? r.condition(*spec, slot) : std::nullopt;
 }
 
 /// A motor whose mode is fixed must not be sent another mode's set-point: where they share a place, a speed of 0 would
 /// be the position 0.
-bool may_be_zeroed(const Resolving& r, const std::string& name, bus::AxisSlot slot) {
+bool may_be_zeroed(const Resolving& r, const std::string& name, AxisSlot slot) {
   const auto belongs_to = [&](Quantity quantity) {
     const QuantitySpec* spec = r.profile.find(quantity);
     return spec != nullptr && std::find(spec->objects.begin(), spec->objects.end(), name) != spec->objects.end();
@@ -36,17 +36,17 @@ bool may_be_zeroed(const Resolving& r, const std::string& name, bus::AxisSlot sl
   return true;
 }
 
-void resolve_roles(Resolving& r, bus::AxisSlot slot) {
-  AxisModel& axis = r.model.axes[slot];
+void resolve_roles(Resolving& r, AxisSlot slot) {
+  model::AxisModel& axis = r.model.axes[slot];
   const auto object_of = [&](Quantity quantity) {
-    const Binding* binding = axis.binding(quantity);
-    return binding == nullptr ? kNoObject : binding->object;
+    const model::Binding* binding = axis.binding(quantity);
+    return binding == nullptr ? model::kNoObject : binding->object;
   };
   axis.statusword = object_of(Quantity::statusword);
   axis.controlword = object_of(Quantity::controlword);
   axis.mode = object_of(Quantity::mode);
-  const ObjectId display = object_of(Quantity::mode_display);
-  axis.mode_display = display == kNoObject ? axis.mode : display;
+  const model::ObjectId display = object_of(Quantity::mode_display);
+  axis.mode_display = display == model::kNoObject ? axis.mode : display;
   axis.cia402.mode_display = axis.mode_display != axis.mode;
   const StateSpec& state = r.profile.state;
   axis.cia402.follow_bits = state.follow_bits.value_or(axis.cia402.follow_bits);
@@ -56,36 +56,36 @@ void resolve_roles(Resolving& r, bus::AxisSlot slot) {
   for (std::size_t i = 0; i < r.profile.fault_words.size(); ++i)
     axis.fault_words[i] = r.id(r.profile.fault_words[i], slot);
   for (const std::string& name : r.profile.state.zero_before_enable)
-    if (const ObjectId id = r.id(name, slot); id != kNoObject && may_be_zeroed(r, name, slot))
+    if (const model::ObjectId id = r.id(name, slot); id != model::kNoObject && may_be_zeroed(r, name, slot))
       axis.zero_before_enable.push_back(id);
   axis.moving = condition(r, r.profile.state.moving, slot);
 }
 
 /// Every object once, the fault first: a drive that is there always answers for it.
-void add_state_sources(const VirtualProperties& facts, AxisModel& axis) {
-  const auto add = [&](const Condition& condition) {
+void add_state_sources(const model::VirtualProperties& facts, model::AxisModel& axis) {
+  const auto add = [&](const model::Condition& condition) {
     if (std::find(axis.state_sources.begin(), axis.state_sources.end(), condition.object) == axis.state_sources.end())
       axis.state_sources.push_back(condition.object);
   };
   add(facts.fault);
   add(facts.enabled);
-  for (const std::optional<Condition>& more : {axis.moving, facts.reached, facts.limit})
+  for (const std::optional<model::Condition>& more : {axis.moving, facts.reached, facts.limit})
     if (more) add(*more);
 }
 
-void resolve_machine(Resolving& r, bus::AxisSlot slot) {
+void resolve_machine(Resolving& r, AxisSlot slot) {
   const StateSpec& spec = r.profile.state;
-  AxisModel& axis = r.model.axes[slot];
+  model::AxisModel& axis = r.model.axes[slot];
   if (!spec.is_virtual) {
     axis.state_sources = {axis.statusword};
     for (const auto& [role, object] : {std::pair("statusword", axis.statusword),
                                        std::pair("controlword", axis.controlword), std::pair("mode", axis.mode)})
-      if (object == kNoObject)
+      if (object == model::kNoObject)
         r.fault("/profile", "profile \"" + r.profile.name + "\" has no " + role + " on " + r.input.protocol +
                                 ", so nothing can be done there");
     return;
   }
-  VirtualProperties out;
+  model::VirtualProperties out;
   out.enabled = condition(r, spec.enabled, slot).value();  // load_profile() has seen to it that every protocol has them
   out.fault = condition(r, spec.fault, slot).value();
   out.limit = condition(r, spec.limit, slot);
@@ -98,14 +98,14 @@ void resolve_machine(Resolving& r, bus::AxisSlot slot) {
   axis.virtual_axis = std::move(out);
 }
 
-void resolve_homing(Resolving& r, bus::AxisSlot slot) {
+void resolve_homing(Resolving& r, AxisSlot slot) {
   const HomingSpec& spec = r.profile.homing;
-  AxisModel& axis = r.model.axes[slot];
+  model::AxisModel& axis = r.model.axes[slot];
   for (const auto& [method, raw] : spec.methods) axis.homing_methods.push_back(method);
   for (const auto& [method, need] : spec.needs) {
-    HomingNeed out{method, {}, need.equals};
+    model::HomingNeed out{method, {}, need.equals};
     for (const std::string& name : need.any_of)
-      if (const ObjectId id = r.id(name, slot); id != kNoObject) out.any_of.push_back(id);
+      if (const model::ObjectId id = r.id(name, slot); id != model::kNoObject) out.any_of.push_back(id);
     if (!out.any_of.empty()) axis.homing_needs.push_back(std::move(out));
   }
   if (spec.in_mode) axis.homed_mode = *spec.in_mode;
@@ -121,7 +121,7 @@ void resolve_homing(Resolving& r, bus::AxisSlot slot) {
 }
 
 /// The constant rated_speed_rpm; of a drive with several motors rated_speed_a_rpm, after the motor's name.
-std::optional<std::uint32_t> rated_speed(const Resolving& r, bus::AxisSlot slot) {
+std::optional<std::uint32_t> rated_speed(const Resolving& r, AxisSlot slot) {
   std::string name = "rated_speed_rpm";
   if (r.profile.axes.size() > 1) {
     std::string motor = r.profile.axes.at(r.motor(slot));
@@ -130,23 +130,23 @@ std::optional<std::uint32_t> rated_speed(const Resolving& r, bus::AxisSlot slot)
   }
   const auto found = r.constants.find(name);
   if (found == r.constants.end()) return std::nullopt;
-  const auto registers = (found->second / base_per_register(Base::rpm, Rational(1))).scale(1);
+  const auto registers = (found->second / model::base_per_register(model::Base::rpm, Rational(1))).scale(1);
   const bool fits = registers && range_of(RegisterType::u32).holds(*registers);
   return fits ? std::optional(static_cast<std::uint32_t>(*registers)) : std::nullopt;
 }
 
 }  // namespace
 
-void make_objects(Resolving& r, bus::AxisSlot slot) {
-  AxisModel& axis = r.model.axes[slot];
+void make_objects(Resolving& r, AxisSlot slot) {
+  model::AxisModel& axis = r.model.axes[slot];
   axis.statusword = make_object(r, slot, "statusword", {2, false}, false);
   axis.controlword = make_object(r, slot, "controlword", {2, false}, true);
   axis.mode = make_object(r, slot, "mode", {1, true}, true);
 }
 
-void resolve_state(Resolving& r, bus::AxisSlot slot) {
+void resolve_state(Resolving& r, AxisSlot slot) {
   resolve_roles(r, slot);
-  AxisModel& axis = r.model.axes[slot];
+  model::AxisModel& axis = r.model.axes[slot];
   const ResolveAxis& input = r.input.axes[slot];
   axis.number = input.number;
   axis.name = input.name;
@@ -164,4 +164,4 @@ void resolve_state(Resolving& r, bus::AxisSlot slot) {
   resolve_homing(r, slot);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -4,44 +4,44 @@
 
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 namespace {
 
-bool at_one_place(const ObjectDef& a, const ObjectDef& b) {
+bool at_one_place(const model::ObjectDef& a, const model::ObjectDef& b) {
   return !a.emulated && !b.emulated && a.address == b.address && a.size == b.size;
 }
 
-void name_aliases(DriveModel& model) {
+void name_aliases(model::DriveModel& model) {
   for (std::size_t i = 0; i < model.objects.size(); ++i)
     for (std::size_t j = 0; j < model.objects.size(); ++j)
       if (i != j && at_one_place(model.objects[i], model.objects[j]))
-        model.objects[i].aliases.push_back(static_cast<ObjectId>(j));
+        model.objects[i].aliases.push_back(static_cast<model::ObjectId>(j));
 }
 
 /// Of several names for one field, the set-point that its motor's mode follows.
-bool is_followed(const DriveModel& model, ObjectId id) {
-  const bus::AxisSlot slot = model.object(id).slot;
-  if (slot == bus::kNoAxis) return false;
+bool is_followed(const model::DriveModel& model, model::ObjectId id) {
+  const AxisSlot slot = model.object(id).slot;
+  if (slot == kNoAxis) return false;
   const auto& bindings = model.axes[slot].bindings;
-  return std::any_of(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.object == id; });
+  return std::any_of(bindings.begin(), bindings.end(), [&](const model::Binding& b) { return b.object == id; });
 }
 
 /// Each field once: all enable bits in the order of the motors, and then all values.
-void list_composed(DriveModel& model) {
-  std::vector<ObjectId>& out = model.composed;
+void list_composed(model::DriveModel& model) {
+  std::vector<model::ObjectId>& out = model.composed;
   for (std::size_t i = 0; i < model.objects.size(); ++i) {
-    const auto id = static_cast<ObjectId>(i);
+    const auto id = static_cast<model::ObjectId>(i);
     if (!model.object(id).composed) continue;
     const auto same = std::find_if(out.begin(), out.end(),
-                                   [&](ObjectId o) { return at_one_place(model.object(o), model.object(id)); });
+                                   [&](model::ObjectId o) { return at_one_place(model.object(o), model.object(id)); });
     if (same == out.end())
       out.push_back(id);
     else if (is_followed(model, id) && !is_followed(model, *same))
       *same = id;
   }
-  std::sort(out.begin(), out.end(), [&](ObjectId a, ObjectId b) {
-    const ObjectDef& left = model.object(a);
-    const ObjectDef& right = model.object(b);
+  std::sort(out.begin(), out.end(), [&](model::ObjectId a, model::ObjectId b) {
+    const model::ObjectDef& left = model.object(a);
+    const model::ObjectDef& right = model.object(b);
     if (left.turns_on != right.turns_on) return left.turns_on;
     return left.address < right.address;
   });
@@ -66,4 +66,4 @@ void resolve_together(Resolving& r) {
   list_unsolicited(r);
 }
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -12,7 +12,7 @@
 #include "gateway/model/scale.hpp"
 #include "gateway/profile/resolve/profile_resolve.hpp"
 
-namespace axisgate::drive {
+namespace axisgate::profile {
 
 class Resolving {
  public:
@@ -20,8 +20,8 @@ class Resolving {
 
   const Profile& profile;
   const ResolveInput& input;
-  DriveModel model;
-  Constants constants;
+  model::DriveModel model;
+  model::Constants constants;
   std::vector<Fault> faults;
 
   void fault(std::string pointer, std::string message) {
@@ -29,32 +29,32 @@ class Resolving {
   }
 
   // Each is absent where the protocol, or a constant nobody gave, leaves something out.
-  [[nodiscard]] ObjectId id(std::string_view name, bus::AxisSlot slot) const;
-  [[nodiscard]] std::optional<Condition> condition(const ConditionSpec& spec, bus::AxisSlot slot) const;
+  [[nodiscard]] model::ObjectId id(std::string_view name, AxisSlot slot) const;
+  [[nodiscard]] std::optional<model::Condition> condition(const ConditionSpec& spec, AxisSlot slot) const;
   [[nodiscard]] std::optional<std::int64_t> raw(const std::vector<ValueSpec>& values, std::string_view object,
-                                                bus::AxisSlot slot) const;
-  [[nodiscard]] std::optional<ObjectWrite> write(const WriteSpec& spec, bus::AxisSlot slot) const;
-  [[nodiscard]] std::optional<FactoryWrite> factory_write(const WriteSpec& spec, bus::AxisSlot slot);
+                                                AxisSlot slot) const;
+  [[nodiscard]] std::optional<model::ObjectWrite> write(const WriteSpec& spec, AxisSlot slot) const;
+  [[nodiscard]] std::optional<model::FactoryWrite> factory_write(const WriteSpec& spec, AxisSlot slot);
   /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
-  [[nodiscard]] std::optional<ScaleRecipe> recipe(const Unit& unit);
+  [[nodiscard]] std::optional<model::ScaleRecipe> recipe(const model::Unit& unit);
   /// Constants that it lacks for that.
-  [[nodiscard]] std::vector<std::string> missing(const Unit& unit);
+  [[nodiscard]] std::vector<std::string> missing(const model::Unit& unit);
 
   /// The motor that an axis is, and the axis that a motor is (kNoAxis: none).
-  [[nodiscard]] bus::AxisSlot motor(bus::AxisSlot slot) const;
-  [[nodiscard]] bus::AxisSlot axis_of(bus::AxisSlot motor) const;
+  [[nodiscard]] AxisSlot motor(AxisSlot slot) const;
+  [[nodiscard]] AxisSlot axis_of(AxisSlot motor) const;
   /// The mode that the maker's tool has given this axis's motor; none where the drive is simply sent one.
-  [[nodiscard]] std::optional<std::int16_t> configured_mode(bus::AxisSlot slot) const;
+  [[nodiscard]] std::optional<std::int16_t> configured_mode(AxisSlot slot) const;
   /// Whether the axis can have a mode, and follow a set-point in one of its modes.
-  [[nodiscard]] bool can_have(bus::AxisSlot slot, std::int16_t mode) const;
-  [[nodiscard]] bool can_follow(bus::AxisSlot slot, Quantity setpoint) const;
+  [[nodiscard]] bool can_have(AxisSlot slot, std::int16_t mode) const;
+  [[nodiscard]] bool can_follow(AxisSlot slot, Quantity setpoint) const;
 
-  std::vector<bus::AxisSlot> motors;                 ///< of each axis: position in Profile::axes
-  std::map<std::string, ObjectId, std::less<>> ids;  ///< by full name
+  std::vector<AxisSlot> motors;                             ///< of each axis: position in Profile::axes
+  std::map<std::string, model::ObjectId, std::less<>> ids;  ///< by full name
 
  private:
   [[nodiscard]] std::optional<std::size_t> drive_constant(const std::string& name);
-  [[nodiscard]] std::optional<DriveConstant::Operand> operand(const Factor& factor) const;
+  [[nodiscard]] std::optional<model::DriveConstant::Operand> operand(const model::Factor& factor) const;
 };
 
 // The parts, in their order.
@@ -65,15 +65,15 @@ void resolve_objects(Resolving& resolving);
 /// After all axes: objects at one place, and what is sent or comes together.
 void resolve_together(Resolving& resolving);
 /// The objects that the gateway makes for a virtual axis.
-void make_objects(Resolving& resolving, bus::AxisSlot slot);
+void make_objects(Resolving& resolving, AxisSlot slot);
 /// Bindings and limits of the axis at `slot`.
-void resolve_quantities(Resolving& resolving, bus::AxisSlot slot);
+void resolve_quantities(Resolving& resolving, AxisSlot slot);
 /// How its state is known, its modes and its homing.
-void resolve_state(Resolving& resolving, bus::AxisSlot slot);
-void resolve_modes(Resolving& resolving, bus::AxisSlot slot);
-void resolve_commands(Resolving& resolving, bus::AxisSlot slot);
+void resolve_state(Resolving& resolving, AxisSlot slot);
+void resolve_modes(Resolving& resolving, AxisSlot slot);
+void resolve_commands(Resolving& resolving, AxisSlot slot);
 void resolve_drive(Resolving& resolving);
 /// After the setup list, which it adds to.
 void resolve_canopen(Resolving& resolving, const ProtocolSpec& protocol);
 
-}  // namespace axisgate::drive
+}  // namespace axisgate::profile

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gateway/core/bytes.hpp"
+#include "gateway/core/numbers.hpp"
 #include "gateway/upstream/dds_link/gateway_name.hpp"
 #include "gateway/upstream/dds_link/guid.hpp"
 #include "gateway/upstream/dds_link/liveliness.hpp"
@@ -23,10 +24,9 @@ inline constexpr std::size_t kMaxPacket = 64 * 1024;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
 inline constexpr std::size_t kMaxBusesShown = 100;
-inline constexpr std::size_t kMaxJoints = 512;        ///< of one sample of joint_commands
-inline constexpr std::uint16_t kMaxAxisNumber = 499;  ///< of one gateway
-inline constexpr std::size_t kMaxBeats = 64;          ///< of one record
-inline constexpr std::size_t kMaxIdentities = 64;     ///< certificates that have a role of their own
+inline constexpr std::size_t kMaxJoints = 512;     ///< of one sample of joint_commands
+inline constexpr std::size_t kMaxBeats = 64;       ///< of one record
+inline constexpr std::size_t kMaxIdentities = 64;  ///< certificates that have a role of their own
 /// Writers of commands at a time, of a whole domain: most may command other gateways.
 inline constexpr std::size_t kMaxWritersKnown = 1024;
 

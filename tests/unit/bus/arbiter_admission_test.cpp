@@ -91,7 +91,7 @@ TEST_F(ArbiterAdmission, stops_and_setup_have_bounds_of_their_own) {
   for (std::size_t i = 0; i < bus::kMaxSetupsPerDrive; ++i) submit(setup(0));
   expect_refused(setup(0));
   for (std::size_t i = bus::kMaxStopsPerAxis + 1; i < bus::kMaxStopsPerBus; ++i) {
-    submit(stop(2, static_cast<bus::AxisSlot>(i % 32)));
+    submit(stop(2, static_cast<AxisSlot>(i % 32)));
   }
   expect_refused(stop(1));
 }

@@ -75,9 +75,9 @@ class RandomRun {
   void submit() {
     BusJob o =
         job(static_cast<Priority>(random_.below(5)), static_cast<DriveSlot>(random_.below(ArbiterReference::kDrives)),
-            static_cast<bus::AxisSlot>(random_.below(2)));
+            static_cast<AxisSlot>(random_.below(2)));
     if (o.priority == Priority::stop && !random_.chance(1, 4)) o.priority = Priority::command;
-    if (random_.chance(1, o.priority == Priority::setup ? 2 : 16)) o.axis = bus::kNoAxis;
+    if (random_.chance(1, o.priority == Priority::setup ? 2 : 16)) o.axis = kNoAxis;
     if (random_.chance(1, 2)) o.start_by = now_ + milliseconds(random_.below(40));
     o.survives_stop = random_.chance(1, 4);
     if (o.priority == Priority::command && random_.chance(1, 2)) {

@@ -136,7 +136,7 @@ class ArbiterReference {
   void drop_for(const BusJob& stop) {
     for (const JobId id : ids()) {
       const Known& k = known_.at(id);
-      const bool hit = k.job.drive == stop.drive && (stop.axis == bus::kNoAxis || k.job.axis == stop.axis);
+      const bool hit = k.job.drive == stop.drive && (stop.axis == kNoAxis || k.job.axis == stop.axis);
       const bool can_fall =
           k.job.priority == Priority::command || (k.job.priority == Priority::interactive && !k.started);
       if (hit && can_fall && !k.job.survives_stop) end(id, Errc::dropped_by_stop);

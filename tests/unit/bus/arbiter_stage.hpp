@@ -22,32 +22,31 @@ namespace axisgate::test {
 using namespace std::chrono_literals;
 using bus::Arbiter;
 using bus::BusJob;
-using bus::DriveSlot;
 using bus::JobId;
 using bus::Priority;
 
-inline constexpr bus::ObjectAddress kTargetPosition{0x607A, 0};
-inline constexpr bus::ObjectAddress kProfileVelocity{0x6081, 0};
-inline constexpr bus::ObjectAddress kStatusword{0x6041, 0};
+inline constexpr ObjectAddress kTargetPosition{0x607A, 0};
+inline constexpr ObjectAddress kProfileVelocity{0x6081, 0};
+inline constexpr ObjectAddress kStatusword{0x6041, 0};
 
-inline BusJob job(Priority priority, DriveSlot drive, bus::AxisSlot axis = 0) {
+inline BusJob job(Priority priority, DriveSlot drive, AxisSlot axis = 0) {
   BusJob o;
   o.priority = priority;
   o.drive = drive;
   o.axis = axis;
   return o;
 }
-inline BusJob stop(DriveSlot drive, bus::AxisSlot axis = 0) { return job(Priority::stop, drive, axis); }
-inline BusJob command(DriveSlot drive, bus::AxisSlot axis = 0) { return job(Priority::command, drive, axis); }
-inline BusJob interactive(DriveSlot drive, bus::AxisSlot axis = 0) { return job(Priority::interactive, drive, axis); }
-inline BusJob setup(DriveSlot drive) { return job(Priority::setup, drive, bus::kNoAxis); }
-inline BusJob setpoint(DriveSlot drive, bus::ObjectAddress object = kTargetPosition, bus::AxisSlot axis = 0) {
+inline BusJob stop(DriveSlot drive, AxisSlot axis = 0) { return job(Priority::stop, drive, axis); }
+inline BusJob command(DriveSlot drive, AxisSlot axis = 0) { return job(Priority::command, drive, axis); }
+inline BusJob interactive(DriveSlot drive, AxisSlot axis = 0) { return job(Priority::interactive, drive, axis); }
+inline BusJob setup(DriveSlot drive) { return job(Priority::setup, drive, kNoAxis); }
+inline BusJob setpoint(DriveSlot drive, ObjectAddress object = kTargetPosition, AxisSlot axis = 0) {
   BusJob o = command(drive, axis);
   o.setpoints_only = true;
   o.writes.push_back(object);
   return o;
 }
-inline BusJob reading(DriveSlot drive, bus::ObjectAddress object = kStatusword, std::uint8_t size = 2) {
+inline BusJob reading(DriveSlot drive, ObjectAddress object = kStatusword, std::uint8_t size = 2) {
   BusJob o = interactive(drive);
   o.read = {object, size};
   return o;

@@ -20,7 +20,6 @@ using namespace std::chrono_literals;
 using bus::Access;
 using bus::Bus;
 using bus::BusJob;
-using bus::DriveSlot;
 using bus::Exchange;
 using bus::ExchangeResult;
 using bus::JobId;
@@ -158,7 +157,7 @@ class BusStage : public testing::Test {
     diary.clear();
     log_lines.clear();
   }
-  JobId submit(DriveSlot drive, Priority priority = Priority::command, bus::AxisSlot axis = 0) {
+  JobId submit(DriveSlot drive, Priority priority = Priority::command, AxisSlot axis = 0) {
     BusJob job;
     job.priority = priority;
     job.drive = drive;

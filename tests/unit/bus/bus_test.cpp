@@ -126,7 +126,7 @@ TEST_F(BusTest, a_stop_waits_for_the_exchange_on_the_wire_and_the_gap_alone) {
   link_up();
   bus->set_poll_due(0, runtime.now());
   bus->set_poll_due(1, runtime.now());
-  for (bus::AxisSlot axis = 0; axis < 8; ++axis) {
+  for (AxisSlot axis = 0; axis < 8; ++axis) {
     for (std::size_t i = 0; i < 4; ++i) submit(1, Priority::command, axis);
     for (std::size_t i = 0; i < 4; ++i) submit(0, Priority::interactive, axis);
   }

@@ -34,7 +34,7 @@ struct Made {
 
 struct Protocol {
   const char* name;
-  bus::ObjectAddress first, second;  ///< of two reads to node 1; of different length where the answers say no more
+  ObjectAddress first, second;  ///< of two reads to node 1; of different length where the answers say no more
   std::uint8_t second_size;
   const char* first_answer;
   const char* second_answer;
@@ -137,8 +137,8 @@ class WireRules : public WireStage, public testing::WithParamInterface<Protocol>
   void answer_second() { far.bring(GetParam().second_answer); }
   [[nodiscard]] std::uint32_t late() const { return wire->statistics().late_replies; }
   /// What was asked for, in order of the replies.
-  [[nodiscard]] std::vector<bus::ObjectAddress> answered() const {
-    std::vector<bus::ObjectAddress> objects;
+  [[nodiscard]] std::vector<ObjectAddress> answered() const {
+    std::vector<ObjectAddress> objects;
     for (const bus::ExchangeResult& result : replies) {
       EXPECT_EQ(result.code, Errc::ok);
       objects.push_back(result.fields.at(0).object);

@@ -13,7 +13,7 @@ namespace {
 using test::from_hex;
 using Kind = SdoReply::Kind;
 
-constexpr bus::ObjectAddress kObject{0x1234, 0x05};
+constexpr ObjectAddress kObject{0x1234, 0x05};
 
 TEST(SdoCodec, requests_are_what_the_standard_prints) {
   EXPECT_EQ(hex_text(upload_frame(kObject)), "40 34 12 05 00 00 00 00");

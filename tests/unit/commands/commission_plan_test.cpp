@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using testing::AllOf;
@@ -13,34 +13,34 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-enum : drive::ObjectId { din1, limits, din5, din6, save, hint };
+enum : model::ObjectId { din1, limits, din5, din6, save, hint };
 
-drive::ObjectDef object(const char* name, std::uint16_t index, std::uint8_t sub) {
-  drive::ObjectDef out;
+model::ObjectDef object(const char* name, std::uint16_t index, std::uint8_t sub) {
+  model::ObjectDef out;
   out.name = name;
   out.address = {index, sub};
   out.writable = true;
   return out;
 }
 
-drive::Check check(const char* name, drive::ObjectId id, std::uint32_t mask, std::int64_t bad,
-                   std::vector<drive::ObjectWrite> remedy) {
-  drive::Check out;
+model::Check check(const char* name, model::ObjectId id, std::uint32_t mask, std::int64_t bad,
+                   std::vector<model::ObjectWrite> remedy) {
+  model::Check out;
   out.name = name;
-  out.bad = {id, mask, drive::Condition::Test::equals, {bad}};
+  out.bad = {id, mask, model::Condition::Test::equals, {bad}};
   out.text = std::string("what ") + name + " means";
   out.remedy = std::move(remedy);
   return out;
 }
 
 /// A first yes could free DIN1, a second take both limit switches away; the third check is beyond any write.
-drive::DriveModel drive_with_checks() {
-  drive::DriveModel out;
+model::DriveModel drive_with_checks() {
+  model::DriveModel out;
   out.objects = {object("din1_function", 0x2010, 3), object("input_functions", 0x2010, 0x0A),
                  object("din5_function", 0x2010, 7), object("din6_function", 0x2010, 8),
                  object("save", 0x2FF0, 1),          object("temperature", 0x2000, 0)};
   out.objects[save].trigger = true;
-  const drive::ObjectWrite store{save, 1, "keeps it over a restart"};
+  const model::ObjectWrite store{save, 1, "keeps it over a restart"};
   out.checks = {
       check("din1_local_control", din1, 0, 1, {{din1, 0, "takes the function off DIN1"}, store}),
       check("limit_inputs_open", limits, 3, 3,
@@ -51,12 +51,12 @@ drive::DriveModel drive_with_checks() {
 
 class CommissionPlan : public ::testing::Test {
  protected:
-  std::string objection_to(const drive::Check& asked, const Numbers& shown, const Numbers& now) {
+  std::string objection_to(const model::Check& asked, const Numbers& shown, const Numbers& now) {
     return objection(model_, asked, shown, now);
   }
-  const drive::DriveModel model_ = drive_with_checks();
-  const drive::Check& free_din1_ = model_.checks[0];
-  const drive::Check& open_limits_ = model_.checks[1];
+  const model::DriveModel model_ = drive_with_checks();
+  const model::Check& free_din1_ = model_.checks[0];
+  const model::Check& open_limits_ = model_.checks[1];
   const Numbers limits_shown_{{limits, 0x43}, {din5, 0x10}, {din6, 0x20}};
 };
 
@@ -146,7 +146,7 @@ TEST_F(CommissionPlan, ABadFindingThatNoWriteRemediesIsLeftBad) {
 }
 
 TEST_F(CommissionPlan, ARegisterOfModbusRtuHasItsNumberAsTheManualsPrintIt) {
-  drive::DriveModel model = drive_with_checks();
+  model::DriveModel model = drive_with_checks();
   model.protocol = "modbus-rtu";
   model.objects[din1].address = {296, 0};
   EXPECT_THAT(text(model, model.checks[0].remedy[0]), HasSubstr("din1_function (register 296) = 0"));
@@ -165,4 +165,4 @@ TEST_F(CommissionPlan, AWriteThatDidNotHoldIsNoCure) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

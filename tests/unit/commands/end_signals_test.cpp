@@ -8,7 +8,7 @@
 #include <csignal>
 #include <vector>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 TEST(EndSignals, OneThatComesBeforeTheLoopRunsEndsItOnPurpose) {
@@ -47,4 +47,4 @@ TEST(EndSignals, WhatNobodyMeansAsTheEndEndsNothing) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using testing::HasSubstr;
@@ -51,4 +51,4 @@ TEST(Explain, SaysNothingOfWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -2,7 +2,7 @@
 // The buttons of `axisgate jog`: what presses them, what lets them go, and nothing else.
 #include "tests/unit/commands/manual_rig.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::HasSubstr;
@@ -132,4 +132,4 @@ TEST_F(ByHand, APressThatIsRefusedForGoodEndsIt) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

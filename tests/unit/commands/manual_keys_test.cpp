@@ -7,7 +7,7 @@
 
 #include "gateway/commands/manual/plan/stand_watch.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using enum ManualKey;
@@ -54,4 +54,4 @@ TEST(ManualKeys, EveryOtherKeyLetsGo) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

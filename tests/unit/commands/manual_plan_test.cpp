@@ -2,7 +2,7 @@
 // Every step of the commands that move an axis by hand, done and failing, against an axis written down here.
 #include "tests/unit/commands/manual_rig.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::HasSubstr;
@@ -397,4 +397,4 @@ TEST_F(ByHand, ANumberThatDoesNotFitMovesNothing) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

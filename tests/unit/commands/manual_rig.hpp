@@ -10,7 +10,7 @@
 
 #include "gateway/commands/manual/plan/manual_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -159,4 +159,4 @@ class ByHand : public ::testing::Test {
   bool looks_at_set_points_ = true;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

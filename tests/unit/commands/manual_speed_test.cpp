@@ -3,7 +3,7 @@
 // words of what is refused by a limit or an alarm.
 #include "tests/unit/commands/manual_rig.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::HasSubstr;
@@ -124,4 +124,4 @@ TEST_F(Speed, ARefusedEnableNamesTheAlarmAndTheCommandThatHelps) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::ElementsAre;
@@ -116,4 +116,4 @@ TEST(ManualView, AnAnswerOfAnotherShapeIsNone) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

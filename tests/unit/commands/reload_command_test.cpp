@@ -13,7 +13,7 @@
 
 #include "gateway/process/control_socket.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,11 +24,11 @@ using testing::ElementsAre;
 struct Heard {
   std::string path = "/no-such-folder/" + std::to_string(::getpid()) + ".json";
   boost::asio::io_context io;
-  stream_protocol::acceptor acceptor{io, stream_protocol::endpoint('\0' + control_name(path))};
+  stream_protocol::acceptor acceptor{io, stream_protocol::endpoint('\0' + process::control_name(path))};
 
   std::string answer(const std::string& with) {
     stream_protocol::socket asker = acceptor.accept();
-    std::string request(kReloadRequest.size(), '\0');
+    std::string request(process::kReloadRequest.size(), '\0');
     boost::asio::read(asker, boost::asio::buffer(request));
     boost::asio::write(asker, boost::asio::buffer(with));
     return request;
@@ -54,8 +54,8 @@ TEST(ReloadCommand, AsksAGatewayThatLivesAndWaitsForTheOutcome) {
   command.join();
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "bus lift: changed\n");
   EXPECT_EQ(code, 0);
-  EXPECT_THAT((std::vector{first, second}), ElementsAre(kAliveRequest, kReloadRequest));
+  EXPECT_THAT((std::vector{first, second}), ElementsAre(process::kAliveRequest, process::kReloadRequest));
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

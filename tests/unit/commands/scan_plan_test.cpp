@@ -10,7 +10,7 @@
 #include "gateway/commands/scan/plan/scan_table.hpp"
 #include "tests/stage/profile_once.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using testing::ElementsAre;
@@ -19,19 +19,17 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-drive::Profile profile(const std::string& name) { return test::shipped_profile(name).profile; }
+profile::Profile profile(const std::string& name) { return test::shipped_profile(name).profile; }
 
 /// A node that has these objects.
 struct Node {
-  std::map<bus::ObjectAddress, bus::ReplyField> objects;
+  std::map<ObjectAddress, bus::ReplyField> objects;
   std::string name;
   int answers_left = 100000;  ///< then it falls silent
 
-  void add(bus::ObjectAddress address, std::uint8_t size, std::uint32_t raw = 0) {
-    objects[address] = {address, size, raw};
-  }
-  void add(const drive::Profile& like) {
-    for (const drive::Object& object : like.objects)
+  void add(ObjectAddress address, std::uint8_t size, std::uint32_t raw = 0) { objects[address] = {address, size, raw}; }
+  void add(const profile::Profile& like) {
+    for (const profile::Object& object : like.objects)
       if (const auto at = object.places.find("canopen"); at != object.places.end() && object.readable)
         add(at->second.address, at->second.type.value_or(object.type).size);
   }
@@ -44,7 +42,7 @@ class Scan : public ::testing::Test {
     bus::ExchangeResult out;
     if (node == nodes_.end() || node->second.answers_left-- <= 0) {
       out.code = Errc::timed_out;
-    } else if (exchange.object == bus::ObjectAddress{0x1008, 0} && !node->second.name.empty()) {
+    } else if (exchange.object == ObjectAddress{0x1008, 0} && !node->second.name.empty()) {
       out.more = exchange.part == bus::Part::first;
       const std::string& name = node->second.name;
       if (!out.more) out.bytes = std::make_shared<std::vector<std::uint8_t>>(name.begin(), name.end());
@@ -76,8 +74,8 @@ class Scan : public ::testing::Test {
 
   std::map<std::uint8_t, Node> nodes_;
   std::vector<std::uint8_t> asked_;
-  const std::vector<drive::Profile> shipped_{profile("kinco-jd"), profile("kinco-md"), profile("leadshine-ld2-can"),
-                                             profile("id286pro")};
+  const std::vector<profile::Profile> shipped_{profile("kinco-jd"), profile("kinco-md"), profile("leadshine-ld2-can"),
+                                               profile("id286pro")};
 };
 
 TEST_F(Scan, OfAnEmptyBusAsksEachNodeOnce) {
@@ -200,7 +198,7 @@ TEST_F(Scan, ANameThatNeverEndsEndsAtItsBound) {
     const auto exchange = plan.next();
     if (!exchange) break;
     bus::ExchangeResult result = answer(*exchange);
-    if (exchange->node == 1 && exchange->object == bus::ObjectAddress{0x1008, 0}) {
+    if (exchange->node == 1 && exchange->object == ObjectAddress{0x1008, 0}) {
       ++parts;
       result = {};
       result.more = true;
@@ -279,4 +277,4 @@ TEST_F(Scan, NamesAreShownWithoutWhatCannotBePrinted) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

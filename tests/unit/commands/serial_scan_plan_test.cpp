@@ -12,15 +12,15 @@
 #include "gateway/core/rtu_crc.hpp"
 #include "tests/stage/profile_once.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-std::vector<drive::Profile> shipped() {
-  std::vector<drive::Profile> out;
+std::vector<profile::Profile> shipped() {
+  std::vector<profile::Profile> out;
   for (const char* name : {"id286pro", "keya-kydas4860-2e", "kinco-jd", "kinco-md", "leadshine-ld2-can"})
     out.push_back(test::shipped_profile(name).profile);
   return out;
@@ -50,7 +50,7 @@ std::vector<Asked> run(SerialScanPlan& plan, std::vector<Station> stations = {})
     for (Station& station : stations) {
       if (station.speech != speech || station.number != exchange->node || station.answers_left-- <= 0) continue;
       result.code = Errc::refused_by_drive;
-      for (const drive::Object& object : test::shipped_profile(station.profile).profile.objects) {
+      for (const profile::Object& object : test::shipped_profile(station.profile).profile.objects) {
         const auto place = object.places.find(speech.protocol);
         if (place == object.places.end() || !(place->second.address == exchange->object)) continue;
         result.code = Errc::ok;
@@ -165,4 +165,4 @@ TEST(SerialScan, ProposesABusForEachProtocolAndRate) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -15,7 +15,7 @@
 #include "gateway/upstream/modbus_tcp/server/server.hpp"
 #include "tests/unit/modbus_server/filled_image.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::AllOf;
@@ -160,4 +160,4 @@ TEST(TopCommand, AnEndpointThatIsNoneIsAWrongCommandLine) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

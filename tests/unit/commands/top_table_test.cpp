@@ -9,7 +9,7 @@
 #include "gateway/core/words.hpp"
 #include "gateway/image/process_image.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 using ::testing::AllOf;
@@ -262,4 +262,4 @@ TEST(TopScreen, AFrameIsCutToTheWindowAndWipesWhatWasThereBefore) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

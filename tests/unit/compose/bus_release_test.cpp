@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr Duration kInTime = 2 * app::kBusReleaseStep + 10ms;
+constexpr Duration kInTime = 2 * compose::kBusReleaseStep + 10ms;
 using Reasons = GatewayStage::Reasons;
 
 /// Two Kinco JD, each on a line of its own.
@@ -20,8 +20,8 @@ struct TwoBuses {
   TwoBuses() { EXPECT_TRUE(stage.come_online()); }
 
   [[nodiscard]] std::shared_ptr<std::optional<Reasons>> begin_reload() {
-    return stage.begin_reload([](app::Config& config) {
-      for (app::BusConfig& bus : config.buses) bus.timeout += 1ms;
+    return stage.begin_reload([](config::Config& config) {
+      for (config::BusConfig& bus : config.buses) bus.timeout += 1ms;
     });
   }
   [[nodiscard]] std::shared_ptr<std::optional<BatchResult>> begin_enable() {

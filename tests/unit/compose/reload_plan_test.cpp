@@ -13,7 +13,7 @@
 #include "gateway/config/config_loader.hpp"
 #include "tests/places.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 using nlohmann::json;
@@ -161,18 +161,18 @@ class ReloadPlanTest : public ::testing::Test {
   ~ReloadPlanTest() override { std::filesystem::remove(path_); }
 
   /// The faults as text, where there are some.
-  std::variant<Config, std::string> load(const json& document) {
+  std::variant<config::Config, std::string> load(const json& document) {
     std::ofstream(path_) << document;
-    LoadResult result = load_config(path_, kProfiles);
-    if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) return text(faults->front());
-    return std::get<LoadedConfig>(result).config;
+    config::LoadResult result = config::load_config(path_, kProfiles);
+    if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return text(faults->front());
+    return std::get<config::LoadedConfig>(result).config;
   }
-  Config good(const json& document) {
+  config::Config good(const json& document) {
     auto loaded = load(document);
     if (const auto* fault = std::get_if<std::string>(&loaded)) ADD_FAILURE() << *fault;
-    return std::holds_alternative<Config>(loaded) ? std::get<Config>(loaded) : Config{};
+    return std::holds_alternative<config::Config>(loaded) ? std::get<config::Config>(loaded) : config::Config{};
   }
-  static std::string does(const Config& before, const Config& after) {
+  static std::string does(const config::Config& before, const config::Config& after) {
     const ReloadPlan plan = plan_reload(before, after);
     // "/dds: domain: it is read when ..."
     if (!plan.refusals.empty())
@@ -188,7 +188,7 @@ class ReloadPlanTest : public ::testing::Test {
 };
 
 TEST_F(ReloadPlanTest, EachKeyDoesWhatItsRowSays) {
-  const Config before = good(running_);
+  const config::Config before = good(running_);
   for (const Row& row : kRows) {
     json document = running_;
     document[json::json_pointer(row.pointer)] = json::parse(row.value);
@@ -197,9 +197,9 @@ TEST_F(ReloadPlanTest, EachKeyDoesWhatItsRowSays) {
       EXPECT_TRUE(std::holds_alternative<std::string>(wanted)) << row.key;
       continue;
     }
-    ASSERT_TRUE(std::holds_alternative<Config>(wanted)) << row.key << ": " << std::get<std::string>(wanted);
-    EXPECT_EQ(does(before, std::get<Config>(wanted)), row.does) << row.key;
-    EXPECT_EQ(does(std::get<Config>(wanted), std::get<Config>(wanted)), "nothing") << row.key;
+    ASSERT_TRUE(std::holds_alternative<config::Config>(wanted)) << row.key << ": " << std::get<std::string>(wanted);
+    EXPECT_EQ(does(before, std::get<config::Config>(wanted)), row.does) << row.key;
+    EXPECT_EQ(does(std::get<config::Config>(wanted), std::get<config::Config>(wanted)), "nothing") << row.key;
   }
 }
 
@@ -264,8 +264,8 @@ TEST_F(ReloadPlanTest, ABusThatIsPutInFrontLeavesTheOthersAlone) {
 
 // Its profile was edited in place: the section of the bus says the same as before.
 TEST_F(ReloadPlanTest, AnEditedProfileChangesItsBuses) {
-  const Config before = good(running_);
-  Config after = before;
+  const config::Config before = good(running_);
+  config::Config after = before;
   after.buses[0].drives[0].profile_text += " ";
   const ReloadPlan plan = plan_reload(before, after);
   EXPECT_THAT(plan.leaving_buses, ElementsAre(0));
@@ -281,4 +281,4 @@ TEST_F(ReloadPlanTest, DdsIsNotBegunOrEndedByIt) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

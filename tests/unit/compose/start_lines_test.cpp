@@ -6,19 +6,19 @@
 
 #include "tests/unit/config/one_bus.hpp"
 
-namespace axisgate::app {
+namespace axisgate::compose {
 namespace {
 
 using testing::HasSubstr;
 
-std::vector<std::string> lines_of(const LoadedConfig& loaded) {
+std::vector<std::string> lines_of(const config::LoadedConfig& loaded) {
   std::vector<std::string> out;
   for (const StartLine& line : start_lines(loaded, "9.8.7")) out.push_back(line.source + ": " + line.text);
   return out;
 }
 
 TEST(StartLines, OneForTheGatewayEachBusEachAxisAndEachListener) {
-  const auto lines = lines_of(load_one_bus(
+  const auto lines = lines_of(config::load_one_bus(
       R"("name": "press", "adapter": "canopen", "device": "can0", "bitrate": 250000)",
       R"({"profile": "leadshine-ld2-can", "node": 3, "axes": [{"axis": 7, "name": "ram", "direction": "inverted",
           "lease": {"timeout_ms": 750, "on_expiry": "halt", "renew": "heartbeat"}}]},
@@ -37,11 +37,11 @@ TEST(StartLines, OneForTheGatewayEachBusEachAxisAndEachListener) {
 }
 
 TEST(StartLines, ASerialLineHasItsParityAndAKeyaItsMotors) {
-  const auto serial = lines_of(load_one_bus(
+  const auto serial = lines_of(config::load_one_bus(
       R"("name": "line", "adapter": "modbus-rtu", "device": "/dev/ttyUSB0", "baud": 115200, "parity": "even")",
       R"({"profile": "id286pro", "node": 1, "axes": [{"axis": 1}]})"));
   EXPECT_THAT(serial[1], HasSubstr("modbus-rtu on /dev/ttyUSB0, 115200 baud 8E1, 1 drive with 1 axis"));
-  const auto keya = lines_of(load_one_bus(
+  const auto keya = lines_of(config::load_one_bus(
       R"("name": "cart", "adapter": "keya-rs232", "device": "/dev/ttyUSB1")",
       R"({"profile": "keya-kydas4860-2e", "node": 1, "axes": [{"axis": 1, "name": "left", "motor": "A"}, {"axis": 2, "name": "right", "motor": "B"}]})"));
   EXPECT_THAT(keya[1], HasSubstr("keya-rs232 on /dev/ttyUSB1, 115200 baud 8N1, 1 drive with 2 axes"));
@@ -50,4 +50,4 @@ TEST(StartLines, ASerialLineHasItsParityAndAKeyaItsMotors) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::compose

@@ -5,25 +5,25 @@
 
 #include "gateway/config/config_sections.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
-using drive::PollClass;
+using model::PollClass;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 /// A drive of one axis with as many objects in each class.
-drive::DriveModel model_with(int fast, int normal, int slow, int once = 0) {
-  drive::DriveModel model;
-  drive::AxisModel axis;
+model::DriveModel model_with(int fast, int normal, int slow, int once = 0) {
+  model::DriveModel model;
+  model::AxisModel axis;
   axis.binding_of.fill(-1);
   const auto add = [&](int count, PollClass poll) {
     for (int i = 0; i < count; ++i) {
-      drive::Binding binding;
+      model::Binding binding;
       binding.quantity = static_cast<Quantity>(axis.bindings.size());
-      binding.object = static_cast<drive::ObjectId>(model.objects.size());
+      binding.object = static_cast<model::ObjectId>(model.objects.size());
       binding.poll = poll;
       axis.binding_of[axis.bindings.size()] = static_cast<std::int16_t>(axis.bindings.size());
       axis.bindings.push_back(binding);
@@ -89,7 +89,7 @@ TEST(BusBudget, WaitsAreCountedInExchanges) {
 TEST(BusBudget, AnOverloadedBusStretchesItsCycleAndNamesPeriodsThatFit) {
   BusTiming timing = kinco_timing();
   timing.poll = {milliseconds(20), milliseconds(100), milliseconds(1000)};
-  const std::vector<drive::DriveModel> drives{model_with(3, 6, 10)};
+  const std::vector<model::DriveModel> drives{model_with(3, 6, 10)};
   const BusBudget budget = plan_bus(timing, drives);
   EXPECT_TRUE(budget.overloaded());
   EXPECT_EQ(budget.load_answered, 2246);  // 150 + 60 + 10 exchanges a second
@@ -116,7 +116,7 @@ TEST(BusBudget, PeriodsThatFitLeaveThePollsSomethingWhereConfirmingTakesTheLine)
 
 TEST(BusBudget, OfTwoKeepAlivesTheOneThatIsDueMoreOftenIsPlannedWith) {
   const auto kept = [](Duration every) {
-    drive::DriveModel model = model_with(1, 0, 0);
+    model::DriveModel model = model_with(1, 0, 0);
     model.keep_alive = every;
     model.axes[0].keep_alive.emplace_back(3, 0);
     return model;
@@ -129,7 +129,7 @@ TEST(BusBudget, OfTwoKeepAlivesTheOneThatIsDueMoreOftenIsPlannedWith) {
 TEST(Timeout, IsTheSlowestDrivesBehindTheWiresTimeAndNoneIsAsShortAsThat) {
   BusConfig bus;
   bus.timeout = {};
-  std::vector<drive::DriveModel> drives(2);
+  std::vector<model::DriveModel> drives(2);
   drives[0].timeout = milliseconds(40);
   drives[1].timeout = milliseconds(20);
   ConfigFaults faults("gateway.json");
@@ -156,4 +156,4 @@ TEST(BusBudget, ExactlyFullIsNotOverloaded) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

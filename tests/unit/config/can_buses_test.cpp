@@ -7,7 +7,7 @@
 #include "gateway/config/config_sections.hpp"
 #include "tests/unit/config/one_bus.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::microseconds;
@@ -61,7 +61,7 @@ TEST(CanBus, WhatComesByTpdoIsOnlyConfirmed) {
 TEST(CanBus, TpdosAndHeartbeatsTakeTheirShare) {
   BusTiming timing = timing_of(BusConfig{});
   timing.can_bitrate = 1000000;
-  drive::DriveModel model;
+  model::DriveModel model;
   model.protocol = "canopen";
   model.objects.resize(2);
   model.objects[0].size = 4;
@@ -95,8 +95,8 @@ TEST(CanBus, TpdosOfManyDrivesLeaveTheLineToRequests) {
     const LoadedConfig loaded = load_bus(several(profile, 30));
     const BusBudget budget = plan_of(loaded);
     EXPECT_LE(budget.load_unsolicited, kUnsolicitedPermille + 50) << profile << ": heartbeats are not stretched";
-    const drive::TpdoProperties& tpdo = loaded.models.at(0).at(0).canopen.tpdos.at(0);
-    const drive::TpdoProperties alone = load_bus(drive(profile, 1)).models.at(0).at(0).canopen.tpdos.at(0);
+    const model::TpdoProperties& tpdo = loaded.models.at(0).at(0).canopen.tpdos.at(0);
+    const model::TpdoProperties alone = load_bus(drive(profile, 1)).models.at(0).at(0).canopen.tpdos.at(0);
     EXPECT_GT(*tpdo.inhibit, *alone.inhibit);
     EXPECT_EQ(tpdo.inhibit_time / *tpdo.inhibit, alone.inhibit_time / *alone.inhibit) << "of the same unit";
     EXPECT_FALSE(budget.overloaded()) << profile;
@@ -106,8 +106,8 @@ TEST(CanBus, TpdosOfManyDrivesLeaveTheLineToRequests) {
 TEST(CanBus, TpdosAreSlowedDownByWholeStepsUntilTheyFitAndNoTimeWraps) {
   for (const std::size_t count : {10U, 14U, 18U, 22U, 26U}) {
     LoadedConfig loaded = load_bus(drive("leadshine-ld2-can", 1));
-    std::vector<std::vector<drive::DriveModel>> models{{count, loaded.models.at(0).at(0)}};
-    drive::TpdoProperties& slow = models[0][0].canopen.tpdos.at(3);
+    std::vector<std::vector<model::DriveModel>> models{{count, loaded.models.at(0).at(0)}};
+    model::TpdoProperties& slow = models[0][0].canopen.tpdos.at(3);
     slow.inhibit_time = slow.inhibit_time / *slow.inhibit * 40000;
     slow.inhibit = 40000;
     ConfigFaults faults("gateway.json");
@@ -149,22 +149,22 @@ TEST(CanBus, TheIdentityReachesTheModel) {
 }
 
 TEST(CanBus, CheckTellsHowTheInterfaceIsBroughtUp) {
-  const std::string given = check(load_bus(drive("kinco-jd", 1), R"(, "bitrate": 250000)")).text;
+  const std::string given = check::report(load_bus(drive("kinco-jd", 1), R"(, "bitrate": 250000)")).text;
   EXPECT_THAT(given, HasSubstr("Bus cell: canopen on can0, 250000 bit/s\n"));
   EXPECT_THAT(given, HasSubstr("interface       bring it up as root: ip link set can0 up type can bitrate 250000 "
                                "restart-ms 100\n"));
-  const std::string open = check(load_bus(drive("kinco-jd", 1), "")).text;
+  const std::string open = check::report(load_bus(drive("kinco-jd", 1), "")).text;
   EXPECT_THAT(open, HasSubstr("Bus cell: canopen on can0, 500000 bit/s assumed\n"));
   EXPECT_THAT(open, HasSubstr("with the bit rate of the drives"));
   const std::string adapter =
-      check(load_bus(drive("kinco-jd", 1), R"(, "bitrate": 250000)", "slcan:/dev/ttyACM0")).text;
+      check::report(load_bus(drive("kinco-jd", 1), R"(, "bitrate": 250000)", "slcan:/dev/ttyACM0")).text;
   EXPECT_THAT(adapter, AllOf(HasSubstr("a serial CAN adapter, which the gateway opens at 250000 bit/s"),
                              Not(HasSubstr("ip link"))));
 }
 
 TEST(CanBus, CheckTellsWhatComesByItselfAndWhatIsOnlyTried) {
   const std::string report =
-      check(load_bus(drive("kinco-jd", 1) + ", " + drive("kinco-jd", 2) + ", " + drive("kinco-md", 9))).text;
+      check::report(load_bus(drive("kinco-jd", 1) + ", " + drive("kinco-jd", 2) + ", " + drive("kinco-md", 9))).text;
   EXPECT_THAT(report, HasSubstr("by TPDO         nodes 1, 2: statusword, position_actual at most each 5 ms; "));
   EXPECT_THAT(report, HasSubstr("                node 9: position_actual, statusword at most each 5 ms, at least each "
                                 "20 ms; "));
@@ -177,7 +177,7 @@ TEST(CanBus, CheckTellsWhatComesByItselfAndWhatIsOnlyTried) {
 }
 
 TEST(CanBus, CheckTellsHowADriveNoticesADeadGateway) {
-  const std::string report = check(load_bus(drive("kinco-jd", 1) + ", " + drive("kinco-md", 9))).text;
+  const std::string report = check::report(load_bus(drive("kinco-jd", 1) + ", " + drive("kinco-md", 9))).text;
   EXPECT_THAT(
       report,
       HasSubstr("gateway dies    WHETHER IT STOPS BY ITSELF IS NOT KNOWN: the drive is told to notice (1016h:01), "
@@ -189,4 +189,4 @@ TEST(CanBus, CheckTellsHowADriveNoticesADeadGateway) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -7,7 +7,7 @@
 #include "gateway/check/check.hpp"
 #include "gateway/check/check_masters.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -24,13 +24,13 @@ class CheckDds : public ::testing::Test {
     budget.command_wait_unresponsive = milliseconds(120);
   }
   std::string said() {
-    std::string out = dds_title(*settings) + "\n";
-    add_lines(out, dds_lines(*settings));
+    std::string out = check::dds_title(*settings) + "\n";
+    check::add_lines(out, check::dds_lines(*settings));
     return out;
   }
   std::string of_the_axis() {
     std::string out;
-    add_lines(out, dds_master_lines(*settings, axis, budget));
+    check::add_lines(out, check::dds_master_lines(*settings, axis, budget));
     return out;
   }
   std::optional<dds::DdsSettings> settings;
@@ -134,10 +134,10 @@ TEST_F(CheckDds, SaysNothingOfDdsClientsWhereTheyOwnNothing) {
 TEST_F(CheckDds, IsPartOfTheReportWhereItIsConfigured) {
   LoadedConfig loaded;
   loaded.config.file = "a.json";
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("DDS")));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("DDS")));
   loaded.config.dds = settings;
-  EXPECT_THAT(check(loaded).text, HasSubstr("\nDDS: domain 0 on lo\n  topics "));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("\nDDS: domain 0 on lo\n  topics "));
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -6,7 +6,7 @@
 
 #include "gateway/check/check.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -30,10 +30,10 @@ class Masters : public ::testing::Test {
     bus.drives.push_back(drive);
     loaded.config.buses.push_back(bus);
 
-    drive::DriveModel model;
+    model::DriveModel model;
     model.protocol = "kinco-serial";
     for (int i = 0; i < 2; ++i) {
-      drive::AxisModel axis;
+      model::AxisModel axis;
       axis.binding_of.fill(-1);
       axis.commands[static_cast<std::size_t>(Command::quick_stop)].emplace();
       axis.commands[static_cast<std::size_t>(Command::halt)].emplace();
@@ -47,16 +47,16 @@ class Masters : public ::testing::Test {
   }
 
   AxisConfig& config(std::size_t axis = 0) { return loaded.config.buses[0].drives[0].axes[axis]; }
-  drive::DriveModel& drive() { return loaded.models[0][0]; }
+  model::DriveModel& drive() { return loaded.models[0][0]; }
 
   std::string said() {
     std::string out;
-    add_lines(out, master_lines({config(), drive().axes[0], drive(), budgets[0], loaded.config.dds}));
+    check::add_lines(out, check::master_lines({config(), drive().axes[0], drive(), budgets[0], loaded.config.dds}));
     return out;
   }
   std::string warned() {
     std::string out;
-    for (const std::string& line : lease_warnings(loaded, budgets)) out += line + "\n";
+    for (const std::string& line : check::lease_warnings(loaded, budgets)) out += line + "\n";
     return out;
   }
 
@@ -116,12 +116,12 @@ TEST_F(Masters, TellsWhatTheStopIsOnThisDrive) {
 
 TEST_F(Masters, TellsInWhichModesAStopIsWithoutARamp) {
   config().stop_without_torque = true;
-  drive::AxisModel& axis = drive().axes[0];
+  model::AxisModel& axis = drive().axes[0];
   axis.virtual_axis.emplace();
-  drive::Step off;
-  drive::Step wait;
-  wait.verb = drive::Step::Verb::wait;
-  drive::CommandDef& stop = *axis.commands[static_cast<std::size_t>(Command::quick_stop)];
+  model::Step off;
+  model::Step wait;
+  wait.verb = model::Step::Verb::wait;
+  model::CommandDef& stop = *axis.commands[static_cast<std::size_t>(Command::quick_stop)];
   stop.steps = {off, wait};
   EXPECT_THAT(said(), HasSubstr("the stop        the torque goes at once\n"));
   stop.variants.push_back({{3}, {off, wait, off, wait}});
@@ -186,7 +186,7 @@ TEST_F(Masters, WarnsOnceOfAllAxesThatNobodyWatches) {
 
 TEST_F(Masters, WarnsThatAKeepAliveOutlivesTheClientWhereThereIsNoLease) {
   drive().keep_alive = milliseconds(300);
-  for (drive::AxisModel& axis : drive().axes) axis.keep_alive = {{3, 0}};
+  for (model::AxisModel& axis : drive().axes) axis.keep_alive = {{3, 0}};
   config(1).lease.on = false;
   EXPECT_THAT(warned(), HasSubstr("axis 2: \"lease\": null: nobody notices that the client is dead, and the keep-alive "
                                   "runs as long as the axis is enabled"));
@@ -246,4 +246,4 @@ TEST_F(Masters, SaysThatTwoProgramsOfOneAddressAreOneClientWhateverRenews) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -28,11 +28,11 @@ LoadedConfig one_axis() {
   bus.drives.push_back(drive);
   loaded.config.buses.push_back(bus);
 
-  drive::DriveModel model;
+  model::DriveModel model;
   model.title = "Kinco JD";
   model.protocol = "kinco-serial";
   model.objects.push_back({});
-  drive::AxisModel axis_model;
+  model::AxisModel axis_model;
   axis_model.binding_of.fill(-1);
   axis_model.statusword = 0;
   axis_model.state_sources = {0};
@@ -44,7 +44,7 @@ LoadedConfig one_axis() {
 }
 
 TEST(Check, SaysThatTheFileIsValidAndPlansEachBus) {
-  const CheckReport report = check(one_axis());
+  const check::CheckReport report = check::report(one_axis());
   EXPECT_THAT(report.text, HasSubstr("gateway.json is valid.\n"));
   EXPECT_THAT(report.text, HasSubstr("Bus lift-serial: kinco-serial on /dev/ttyUSB0, 38400 baud\n"));
   EXPECT_THAT(report.text, HasSubstr("fast 1 each 20 ms"));
@@ -57,27 +57,27 @@ TEST(Check, SaysThatTheFileIsValidAndPlansEachBus) {
 TEST(Check, SaysHowFarFloatsTellUnitsApart) {
   LoadedConfig loaded = one_axis();
   loaded.config.modbus_tcp.resize(2);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("float")));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("float")));
   loaded.config.modbus_tcp[1].float_numbers = true;
-  EXPECT_THAT(check(loaded).text, HasSubstr("each unit has its own number up to ±1024 turns\n"));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("each unit has its own number up to ±1024 turns\n"));
   loaded.config.buses[0].drives[0].axes[0].units_per_rev = Rational(65536);
-  EXPECT_THAT(check(loaded).text, HasSubstr("up to ±256 turns\n"));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("up to ±256 turns\n"));
 }
 
 TEST(Check, NamesWhatAnAxisDoesNotHave) {
-  const std::string text = check(one_axis()).text;
+  const std::string text = check::report(one_axis()).text;
   EXPECT_THAT(text, HasSubstr("quantities: mode_display, velocity_actual, torque_actual"));
   EXPECT_THAT(text, HasSubstr("commands: disable, quick_stop, halt"));
 }
 
 TEST(Check, GivesUnitsAndRangeInTurns) {
   LoadedConfig loaded = one_axis();
-  EXPECT_THAT(check(loaded).text, HasSubstr("10000 per motor turn; in turns, a register reaches ±214748.4"));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("10000 per motor turn; in turns, a register reaches ±214748.4"));
   AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
   axis.units_per_rev = Rational(60000, 37);
   axis.limits.position = Range{-60000, 120000};
-  EXPECT_THAT(check(loaded).text, HasSubstr("60000/37 per motor turn"));
-  EXPECT_THAT(check(loaded).text, HasSubstr("-60000 to 120000 (-37.00 to 74.00 turns)"));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("60000/37 per motor turn"));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("-60000 to 120000 (-37.00 to 74.00 turns)"));
 }
 
 TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
@@ -85,7 +85,7 @@ TEST(Check, AnOverloadedBusIsNamedWithPeriodsThatFit) {
   loaded.config.buses.push_back(loaded.config.buses[0]);
   loaded.models.push_back(loaded.models[0]);
   loaded.config.buses[0].poll[0] = milliseconds(5);
-  const CheckReport report = check(loaded);
+  const check::CheckReport report = check::report(loaded);
   EXPECT_TRUE(report.overloaded);
   EXPECT_THAT(report.text, HasSubstr("OVERLOADED"));
   EXPECT_THAT(report.text, HasSubstr("\"poll\": {\"fast\": 20,"));
@@ -96,9 +96,9 @@ TEST(Check, WarnsOfATimeoutThatNoAnswerCanKeep) {
   BusConfig& bus = loaded.config.buses[0];
   const Duration needed = plan_bus(timing_of(bus), loaded.models[0]).exchange;
   bus.timeout = needed;
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("timeout_ms of")));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("timeout_ms of")));
   bus.timeout = milliseconds(5);
-  EXPECT_THAT(check(loaded).text,
+  EXPECT_THAT(check::report(loaded).text,
               HasSubstr("warning: bus lift-serial: a timeout_ms of 5 is shorter than the longest request, which takes "
                         "10.2 ms with a drive that answers after 5 ms: its drives will be taken for unresponsive; "
                         "write at least 11\n"));
@@ -109,13 +109,13 @@ TEST(Check, WarnsOfLimitsThatLimitNothing) {
   AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
   axis.pointer = "/buses/0/drives/0/axes/0";
   axis.limits.velocity = 600'000;
-  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model::AxisModel& model = loaded.models[0][0].axes[0];
   model.supported |= bit(Quantity::target_velocity);
   model.writable |= bit(Quantity::target_velocity);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("warning: gateway.json: ")));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("warning: gateway.json: ")));
   axis.limits.quick_stop_deceleration_min = 1000;
   axis.limits.torque = 500;
-  EXPECT_THAT(check(loaded).text,
+  EXPECT_THAT(check::report(loaded).text,
               AllOf(HasSubstr("warning: gateway.json: /buses/0/drives/0/axes/0/limits/quick_stop_deceleration_min: "
                               "limits nothing, for Kinco JD has no quick_stop_deceleration that can be written on "
                               "kinco-serial: take it out\n"),
@@ -126,19 +126,19 @@ TEST(Check, WarnsOfLimitsThatLimitNothing) {
 TEST(Check, PrintsTheLimitsInRpmAndTurnsAndWarnsWhereThereAreNone) {
   LoadedConfig loaded = one_axis();
   AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
-  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model::AxisModel& model = loaded.models[0][0].axes[0];
   const std::uint32_t targets = bit(Quantity::target_velocity) | bit(Quantity::target_position);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("limit of"))) << "nothing can be asked for";
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("limit of"))) << "nothing can be asked for";
   model.supported |= targets;
   model.writable |= targets;
-  EXPECT_THAT(check(loaded).text, AllOf(HasSubstr("limits          velocity NONE; position NONE\n"),
-                                        HasSubstr("warning: no limit of velocity: axis 7: "),
-                                        HasSubstr("warning: no limit of position: axis 7: ")));
+  EXPECT_THAT(check::report(loaded).text, AllOf(HasSubstr("limits          velocity NONE; position NONE\n"),
+                                                HasSubstr("warning: no limit of velocity: axis 7: "),
+                                                HasSubstr("warning: no limit of position: axis 7: ")));
   axis.limits.velocity = 600'000;
   axis.limits.position = Range{-5000, 125'000};
   axis.limits.acceleration = 6000;
   axis.limits.torque = 505;
-  EXPECT_THAT(check(loaded).text,
+  EXPECT_THAT(check::report(loaded).text,
               AllOf(HasSubstr("limits          velocity 600 rpm; position -5000 to 125000 (-0.50 to 12.50 "
                               "turns); acceleration 600 rpm/s; torque 50.5 %\n"),
                     Not(HasSubstr("no limit of"))));
@@ -148,34 +148,35 @@ TEST(Check, WarnsOfAVelocityThatWasMeantInRpm) {
   LoadedConfig loaded = one_axis();
   AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
   axis.pointer = "/buses/0/drives/0/axes/0";
-  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model::AxisModel& model = loaded.models[0][0].axes[0];
   model.supported |= bit(Quantity::target_velocity);
   model.writable |= bit(Quantity::target_velocity);
   axis.limits.velocity = 3000;
-  EXPECT_THAT(check(loaded).text,
+  EXPECT_THAT(check::report(loaded).text,
               HasSubstr("warning: gateway.json: /buses/0/drives/0/axes/0/limits/velocity: 3000 is 3 rpm: its "
                         "unit is 0.001 rpm, 3000000 would be 3000 rpm\n"));
   axis.limits.velocity = 10'000;
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("its unit is")));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("its unit is")));
   model.rated_speed = 3'000'000;
-  EXPECT_THAT(check(loaded).text, HasSubstr("10000 is 10 rpm, 0.33 % of the rated speed of 3000 rpm"));
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("10000 is 10 rpm, 0.33 % of the rated speed of 3000 rpm"));
   axis.limits.velocity = 30'000;
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("its unit is")));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("its unit is")));
 }
 
 /// What a limit of the velocity does not reach: by this command, whose speed nobody can write.
 void expect_warning_of_own_speed(Command command, Quantity speed, const std::string& motion, const std::string& name) {
   LoadedConfig loaded = one_axis();
-  drive::AxisModel& model = loaded.models[0][0].axes[0];
+  model::AxisModel& model = loaded.models[0][0].axes[0];
   model.supported |= bit(Quantity::target_velocity) | bit(speed);
   model.writable |= bit(Quantity::target_velocity);
   model.supported_commands |= 1U << static_cast<unsigned>(command);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach " + motion)));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("does not reach " + motion)));
   loaded.config.buses[0].drives[0].axes[0].limits.velocity = 600'000;
-  EXPECT_THAT(check(loaded).text, HasSubstr("/limits/velocity: does not reach " + motion + ": of Kinco JD no " + name +
-                                            " is known that could be written; set a safe one in the drive itself\n"));
+  EXPECT_THAT(check::report(loaded).text,
+              HasSubstr("/limits/velocity: does not reach " + motion + ": of Kinco JD no " + name +
+                        " is known that could be written; set a safe one in the drive itself\n"));
   model.writable |= bit(speed);
-  EXPECT_THAT(check(loaded).text, Not(HasSubstr("does not reach " + motion)));
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("does not reach " + motion)));
 }
 
 TEST(Check, WarnsOfHomingThatNoLimitReaches) {
@@ -189,8 +190,9 @@ TEST(Check, WarnsOfMovesThatNoLimitReaches) {
 TEST(Check, RepeatsTheWarnings) {
   LoadedConfig loaded = one_axis();
   loaded.warnings.push_back("gateway.json: /modbus_tcp/0/listen: everybody may read");
-  EXPECT_THAT(check(loaded).text, HasSubstr("warning: gateway.json: /modbus_tcp/0/listen: everybody may read\n"));
+  EXPECT_THAT(check::report(loaded).text,
+              HasSubstr("warning: gateway.json: /modbus_tcp/0/listen: everybody may read\n"));
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

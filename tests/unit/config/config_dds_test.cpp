@@ -10,7 +10,7 @@
 #include "gateway/process/descriptor_needs.hpp"
 #include "tests/places.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -140,7 +140,7 @@ TEST_F(ConfigDds, TellsWhichFilesItsProcessReadsButThePrivateKey) {
   std::filesystem::create_directory(folder_);
   const auto put = [&](const std::string& name, const std::string& text) {
     std::ofstream(folder_ + name) << text;
-    return drive::FileRead{folder_ + name, text};
+    return profile::FileRead{folder_ + name, text};
   };
   const auto value = [&](const std::string& name, const std::string& file) {
     return "<property><name>dds.sec." + name + "</name><value> file://" + folder_ + file + "\n</value></property>";
@@ -153,7 +153,7 @@ TEST_F(ConfigDds, TellsWhichFilesItsProcessReadsButThePrivateKey) {
   static_cast<void>(put("/a.key", "secret"));
   const LoadedConfig loaded =
       load(R"({"commands": true, "qos_file": "qos.xml", "roles": [{"certificate": "b.pem", "role": "operator"}]})");
-  EXPECT_THAT(loaded.config.read_by_dds, ElementsAre(qos, b, a, drive::FileRead{folder_ + "/gone.smime"}));
+  EXPECT_THAT(loaded.config.read_by_dds, ElementsAre(qos, b, a, profile::FileRead{folder_ + "/gone.smime"}));
   EXPECT_THAT(watched_files(loaded.config), SizeIs(loaded.config.read.size() + 4));
   EXPECT_THAT(load("{}").config.read_by_dds, IsEmpty());
 }
@@ -196,8 +196,9 @@ TEST_F(ConfigDds, WarnsThatAViewerCommandsNothing) {
 }
 
 TEST_F(ConfigDds, IsCountedInTheNeedForDescriptors) {
-  EXPECT_GT(descriptor_needs(load("{}").config).reserve(), descriptor_needs(load("").config).reserve());
+  EXPECT_GT(process::descriptor_needs(load("{}").config).reserve(),
+            process::descriptor_needs(load("").config).reserve());
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 TEST(Endpoint, TakesNumericAddressesAndAPort) {
@@ -76,4 +76,4 @@ TEST(Network, RefusesEverythingElse) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

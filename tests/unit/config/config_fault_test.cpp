@@ -7,7 +7,7 @@
 
 #include "gateway/config/config_node.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using ::testing::ElementsAre;
@@ -62,4 +62,4 @@ TEST(ConfigNode, TakesNoTimeThatOverflows) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

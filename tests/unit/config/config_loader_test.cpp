@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::milliseconds;
@@ -31,7 +31,7 @@ class ConfigLoader : public ::testing::Test {
   LoadedConfig load_good(const std::string& text) {
     LoadResult result = load(text);
     if (const auto* faults = std::get_if<std::vector<ConfigFault>>(&result)) {
-      for (const ConfigFault& fault : *faults) ADD_FAILURE() << axisgate::app::text(fault);
+      for (const ConfigFault& fault : *faults) ADD_FAILURE() << axisgate::config::text(fault);
       return {};
     }
     return std::move(std::get<LoadedConfig>(result));
@@ -158,7 +158,7 @@ TEST_F(ConfigLoader, HandsTheLeaseAndTheJogTimeToTheDrive) {
   const LoadedConfig loaded = load_good(one_drive("", "", "", R"(, "vertical": true, "jog_timeout_ms": 250,
     "lease": {"timeout_ms": 750, "on_expiry": "none", "renew": "write"})"));
   EXPECT_TRUE(loaded.config.buses.at(0).drives.at(0).axes.at(0).vertical);
-  const drive::AxisModel& axis = loaded.models.at(0).at(0).axes.at(0);
+  const model::AxisModel& axis = loaded.models.at(0).at(0).axes.at(0);
   EXPECT_TRUE(axis.lease.on);
   EXPECT_EQ(axis.lease.timeout, milliseconds(750));
   EXPECT_EQ(axis.lease.on_expiry, LeaseAction::none);
@@ -191,7 +191,7 @@ TEST_F(ConfigLoader, KeepsWhatItHasReadAndWhereItLookedInVain) {
   const std::string shipped = kShipped.front() + "/";
   std::ofstream(path_) << one_drive("", "");
   const LoadResult loaded = load_config(path_, {own, kShipped.front()});
-  std::vector<drive::FileRead> expected{{path_, one_drive("", "")}, {own + "/kinco-jd.json"}};
+  std::vector<profile::FileRead> expected{{path_, one_drive("", "")}, {own + "/kinco-jd.json"}};
   for (const char* file : {"kinco-jd.json", "kinco.json", "cia402.json"})
     expected.push_back({shipped + file, text_of(shipped + file)});
   EXPECT_EQ(std::get<LoadedConfig>(loaded).config.read, expected);
@@ -254,4 +254,4 @@ TEST_F(ConfigLoader, NothingThatJsonCanSayEndsItByException) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -6,7 +6,7 @@
 #include "gateway/check/check.hpp"
 #include "tests/unit/config/one_bus.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::microseconds;
@@ -121,19 +121,19 @@ TEST(KeyaBus, ItsPeriodsLeaveRoomForCommandsHoweverManyDrivesShareIt) {
 TEST(KeyaBus, PeriodsThatAreGivenAreKept) {
   const LoadedConfig loaded = load_keya("keya-can", keya(1), R"(, "poll": {"fast": 10, "normal": 15, "slow": 30})");
   EXPECT_THAT(bus_of(loaded).poll, ElementsAre(milliseconds(10), milliseconds(15), milliseconds(30)));
-  EXPECT_TRUE(check(loaded).overloaded);
+  EXPECT_TRUE(check::report(loaded).overloaded);
 }
 
 TEST(KeyaBus, CheckTellsHowToBringTheInterfaceUpAndWhatGoesOverTheLineUnasked) {
   EXPECT_THAT(
-      check(load_keya("keya-can", keya(1))).text,
+      check::report(load_keya("keya-can", keya(1))).text,
       AllOf(HasSubstr("Bus agv: keya-can on agv0, 250000 bit/s assumed\n"),
             HasSubstr("ip link set agv0 up type can bitrate 250000"), HasSubstr("keep-alive      2 writes each"),
             HasSubstr("heartbeats of the drives: 0.1 % of the line")));
-  EXPECT_THAT(check(load_keya("keya-rs485", keya(1))).text,
+  EXPECT_THAT(check::report(load_keya("keya-rs485", keya(1))).text,
               AllOf(HasSubstr("Bus agv: keya-rs485 on agv0, 115200 baud\n"), Not(HasSubstr("keep-alive")),
                     Not(HasSubstr("heartbeats of the drives")), HasSubstr("DOES NOT STOP BY ITSELF on keya-rs485")));
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

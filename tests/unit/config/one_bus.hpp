@@ -13,7 +13,7 @@
 #include "gateway/config/config_loader.hpp"
 #include "tests/places.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 
 /// `bus`: its members beside "drives", in JSON.
 [[nodiscard]] inline LoadedConfig load_one_bus(const std::string& bus, const std::string& drives) {
@@ -34,4 +34,4 @@ namespace axisgate::app {
   return plan_bus(timing_of(bus_of(loaded)), loaded.models.at(0));
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -6,7 +6,7 @@
 #include "gateway/check/check.hpp"
 #include "tests/unit/config/one_bus.hpp"
 
-namespace axisgate::app {
+namespace axisgate::config {
 namespace {
 
 using std::chrono::microseconds;
@@ -99,18 +99,18 @@ TEST(RtuLine, TheDefaultPeriodsLeaveCommandsAFifthOfTheLine) {
     const BusBudget budget = plan_of(loaded);
     EXPECT_LE(budget.load_answered, kComfortablePermille) << drives;
     EXPECT_GT(budget.load_answered, 600) << drives << ": the line could give fresher values";
-    for (const drive::DriveModel& model : loaded.models.at(0)) EXPECT_EQ(model.poll_period, bus_of(loaded).poll);
+    for (const model::DriveModel& model : loaded.models.at(0)) EXPECT_EQ(model.poll_period, bus_of(loaded).poll);
   }
 }
 
 TEST(RtuLine, CheckNamesTheAnswerTimesItCountsWith) {
-  EXPECT_THAT(check(load_line(kJd)).text, HasSubstr("with drives that answer after 5 ms, "));
-  EXPECT_THAT(check(load_line(kStepper)).text, HasSubstr("with drives that answer after 20 ms, "));
-  EXPECT_THAT(check(load_line(both())).text, HasSubstr("with drives that answer after 5 to 20 ms, "));
+  EXPECT_THAT(check::report(load_line(kJd)).text, HasSubstr("with drives that answer after 5 ms, "));
+  EXPECT_THAT(check::report(load_line(kStepper)).text, HasSubstr("with drives that answer after 20 ms, "));
+  EXPECT_THAT(check::report(load_line(both())).text, HasSubstr("with drives that answer after 5 to 20 ms, "));
 }
 
 TEST(RtuLine, CheckReportsTheLine) {
-  const std::string report = check(load_line(both())).text;
+  const std::string report = check::report(load_line(both())).text;
   EXPECT_THAT(report, HasSubstr("Bus line-a: modbus-rtu on /dev/ttyS1, 19200 baud\n"));
   EXPECT_THAT(report, HasSubstr("drives          Kinco JD at node 1, iD286pro at node 3\n"));
   EXPECT_THAT(report, HasSubstr("THE DRIVE DOES NOT STOP BY ITSELF on modbus-rtu"));
@@ -120,12 +120,12 @@ TEST(RtuLine, CheckReportsTheLine) {
 TEST(RtuLine, CheckSaysWhichAxisStopsWithoutALeaseWhenItsClientLeaves) {
   constexpr const char* kLeaves = "but for a quick stop when its connection ends, where \"client\" is \"connection\"\n";
   const auto without_lease = [](std::string drive) {
-    return check(load_line(drive.replace(drive.find("\"axis\": "), 0, "\"lease\": null, "))).text;
+    return check::report(load_line(drive.replace(drive.find("\"axis\": "), 0, "\"lease\": null, "))).text;
   };
   EXPECT_THAT(without_lease(kStepper), HasSubstr(kLeaves));
   EXPECT_THAT(without_lease(kJd), Not(HasSubstr(kLeaves)));
-  EXPECT_THAT(check(load_line(kStepper)).text, Not(HasSubstr(kLeaves))) << "its lease takes care of it";
+  EXPECT_THAT(check::report(load_line(kStepper)).text, Not(HasSubstr(kLeaves))) << "its lease takes care of it";
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::config

@@ -10,20 +10,20 @@
 namespace axisgate::drive {
 namespace {
 
-constexpr ObjectId kStatusA = 0, kStatusB = 1, kGuardTime = 2, kLifeFactor = 3, kReaction = 4, kElse = 5;
+constexpr model::ObjectId kStatusA = 0, kStatusB = 1, kGuardTime = 2, kLifeFactor = 3, kReaction = 4, kElse = 5;
 constexpr std::int64_t kDisabled = 0x250, kEnabled = 0x237, kQuickStop = 0x217, kFault = 0x218, kFaultReaction = 0x21F;
 
-DriveModel two_motors() {
-  DriveModel model;
+model::DriveModel two_motors() {
+  model::DriveModel model;
   for (const char* name : {"status a", "status b", "guard time", "life factor", "reaction", "else"}) {
-    ObjectDef object;
+    model::ObjectDef object;
     object.name = name;
     object.address = {static_cast<std::uint16_t>(0x2000 + model.objects.size()), 0};
     object.size = 2;
     model.objects.push_back(object);
   }
-  for (const ObjectId status : {kStatusA, kStatusB}) {
-    AxisModel axis;
+  for (const model::ObjectId status : {kStatusA, kStatusB}) {
+    model::AxisModel axis;
     axis.statusword = status;
     axis.state_sources = {status};
     model.axes.push_back(axis);
@@ -38,12 +38,12 @@ constexpr std::array kAllThatBefalls{Befalls::nothing, Befalls::lost_request, Be
                                      Befalls::late};
 
 struct Played {
-  std::map<ObjectId, std::int64_t> drive{{kStatusA, kDisabled}, {kStatusB, kDisabled}, {kGuardTime, 200},
-                                         {kLifeFactor, 3},      {kReaction, 1},        {kElse, 7}};
+  std::map<model::ObjectId, std::int64_t> drive{{kStatusA, kDisabled}, {kStatusB, kDisabled}, {kGuardTime, 200},
+                                                {kLifeFactor, 3},      {kReaction, 1},        {kElse, 7}};
   std::map<int, Befalls> befalls;
   std::function<void(Played&, int step)> meanwhile = [](Played&, int) {};
   std::optional<int> brought_up_to{};  ///< so many of its entries are written; the store knows what was there before
-  std::vector<ObjectId> written{};
+  std::vector<model::ObjectId> written{};
   int steps = 0;
   Disarming::Outcome outcome{};
 
@@ -55,7 +55,7 @@ struct Played {
   }
 
   void play() {
-    const DriveModel model = two_motors();
+    const model::DriveModel model = two_motors();
     ObjectStore store(model.objects);
     for (const auto& [id, number] : drive) store.read(id, brought_up_to ? 0 : number, {});
     Disarming disarming(model);
@@ -85,12 +85,12 @@ TEST(Disarming, ClearsTheReactionFirstWhereNoMotorHasTorque) {
   played.play();
   EXPECT_EQ(played.outcome, Disarming::Outcome::disarmed);
   EXPECT_TRUE(played.disarmed());
-  EXPECT_EQ(played.written, (std::vector<ObjectId>{kReaction, kLifeFactor, kGuardTime}));
+  EXPECT_EQ(played.written, (std::vector<model::ObjectId>{kReaction, kLifeFactor, kGuardTime}));
   EXPECT_EQ(played.drive[kElse], 7) << "no part of the watch";
 }
 
 TEST(Disarming, WritesNothingWhereAMotorHasTorque) {
-  for (const ObjectId motor : {kStatusA, kStatusB}) {
+  for (const model::ObjectId motor : {kStatusA, kStatusB}) {
     for (const std::int64_t state : {kEnabled, kQuickStop, kFaultReaction}) {
       Played played;
       played.drive[motor] = state;
@@ -106,7 +106,7 @@ TEST(Disarming, PutsBackWhatItClearedFromADriveThatIsEnabledMeanwhile) {
   Played quiet;
   quiet.play();
   for (int enabled_at = 0; enabled_at < quiet.steps; ++enabled_at) {
-    for (const ObjectId motor : {kStatusA, kStatusB}) {
+    for (const model::ObjectId motor : {kStatusA, kStatusB}) {
       Played played;
       played.meanwhile = [&](Played& p, int step) {
         if (step == enabled_at) p.drive[motor] = kEnabled;

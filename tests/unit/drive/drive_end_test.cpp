@@ -9,13 +9,13 @@ namespace {
 
 /// One motor and one entry that makes its drive miss the gateway, as the setup list has it.
 struct Ending {
-  DriveModel model = [] {
-    DriveModel out;
+  model::DriveModel model = [] {
+    model::DriveModel out;
     out.objects.resize(2);
     out.objects[0].address = {0x6041, 0};
     out.objects[1].address = {0x1016, 1};
-    for (ObjectDef& object : out.objects) object.size = 2;
-    AxisModel axis;
+    for (model::ObjectDef& object : out.objects) object.size = 2;
+    model::AxisModel axis;
     axis.statusword = 0;
     axis.state_sources = {0};
     out.axes.push_back(axis);

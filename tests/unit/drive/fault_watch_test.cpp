@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr ObjectId kStatus = 1, kWordOne = 2, kWordTwo = 3;
+constexpr model::ObjectId kStatus = 1, kWordOne = 2, kWordTwo = 3;
 
 class FaultWatchTest : public testing::Test {
  protected:
@@ -32,8 +32,8 @@ class FaultWatchTest : public testing::Test {
     watch_.observe(seen_);
     watch_.name(code);
   }
-  std::vector<ObjectId> reads() {
-    std::vector<ObjectId> out;
+  std::vector<model::ObjectId> reads() {
+    std::vector<model::ObjectId> out;
     for (int i = 0; i < 10; ++i) {
       const auto next = watch_.next(now_);
       if (!next) break;
@@ -52,14 +52,14 @@ class FaultWatchTest : public testing::Test {
 TEST_F(FaultWatchTest, ReadsEachWordOnceAndShowsTheFaultWithWhatTheyName) {
   see(false);
   read_words(0, 0);
-  EXPECT_EQ(reads(), std::vector<ObjectId>{});
+  EXPECT_EQ(reads(), std::vector<model::ObjectId>{});
   see(true);
   EXPECT_TRUE(watch_.withheld());
-  EXPECT_EQ(reads(), (std::vector<ObjectId>{kWordOne, kWordTwo}));
+  EXPECT_EQ(reads(), (std::vector<model::ObjectId>{kWordOne, kWordTwo}));
   read_words(0x3210, 0x20);
   EXPECT_FALSE(watch_.withheld());
   EXPECT_EQ(watch_.code(), 0x3210);
-  EXPECT_EQ(reads(), std::vector<ObjectId>{});
+  EXPECT_EQ(reads(), std::vector<model::ObjectId>{});
 }
 
 TEST_F(FaultWatchTest, AskedInVainItAsksAgainAfterAPauseAndGivesUpAfterHalfASecond) {
@@ -88,7 +88,7 @@ TEST_F(FaultWatchTest, WordsThatAllAreRefusedAreNotAskedAndAnEmergencyIsEnough) 
   see(false);
   watch_.emergency(0x4210, now_, exchange_);
   see(true);
-  EXPECT_EQ(reads(), std::vector<ObjectId>{});
+  EXPECT_EQ(reads(), std::vector<model::ObjectId>{});
   EXPECT_FALSE(watch_.withheld());
   EXPECT_EQ(watch_.code(), 0x4210);
   watch_.emergency(0, now_, exchange_);
@@ -127,7 +127,7 @@ TEST_F(FaultWatchTest, AWordBeforeItsStatuswordWaitsForItAndAWarningIsShownThen)
   see(false);
   read_words(0x5441, 0x400);
   EXPECT_TRUE(watch_.words_ahead());
-  EXPECT_EQ(reads(), std::vector<ObjectId>{kStatus});
+  EXPECT_EQ(reads(), std::vector<model::ObjectId>{kStatus});
   see(false, 0x5441);
   EXPECT_FALSE(watch_.words_ahead());
   read_words(0x5441, 0x400);

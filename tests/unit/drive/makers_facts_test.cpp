@@ -22,16 +22,17 @@ class MakersFacts : public testing::Test {
     store.read(core.model.mode, 1, turn.now);
     store.read(core.model.mode_display, 1, turn.now);
   }
-  static DriveModel kinco() {
-    ResolveInput input;
+  static model::DriveModel kinco() {
+    profile::ResolveInput input;
     input.protocol = "canopen";
-    ResolveAxis axis;
+    profile::ResolveAxis axis;
     axis.number = 1;
     input.axes = {axis};
-    return std::get<DriveModel>(resolve(load_profile(test::source_path("schemas/drives/kinco-jd.json")), input));
+    return std::get<model::DriveModel>(
+        profile::resolve(profile::load_profile(test::source_path("schemas/drives/kinco-jd.json")), input));
   }
 
-  DriveModel model;
+  model::DriveModel model;
   ObjectStore store;
   Turn turn{.now = kLongAgo, .link = LinkState::online};
   AxisCore core{model, model.axes[0], store, turn};

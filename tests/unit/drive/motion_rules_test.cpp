@@ -18,7 +18,7 @@ struct Stage {
   Stage() {
     facts.at = kStart;
     facts.reachable = true;
-    facts.state = State402::operation_enabled;
+    facts.state = model::State402::operation_enabled;
     facts.mode = 1;
     facts.statusword_exchange = 10;
     see();
@@ -66,8 +66,8 @@ TEST(MotionRules, WhereNothingAcknowledgesASetPointReachedMustFallFirst) {
 TEST(MotionRules, EverythingThatEndsAMotionForGoodEndsItForGood) {
   const std::vector<std::pair<std::function<void(Stage&)>, MotionState>> ends{
       {[](Stage& s) { s.motion.stop(false, s.facts.at); }, MotionState::aborted},
-      {[](Stage& s) { s.facts.state = State402::fault, s.see(); }, MotionState::failed},
-      {[](Stage& s) { s.facts.state = State402::switch_on_disabled, s.see(); }, MotionState::failed},
+      {[](Stage& s) { s.facts.state = model::State402::fault, s.see(); }, MotionState::failed},
+      {[](Stage& s) { s.facts.state = model::State402::switch_on_disabled, s.see(); }, MotionState::failed},
       {[](Stage& s) { s.facts.reachable = false, s.see(); }, MotionState::failed}};
   for (const MotionKind kind : {MotionKind::discrete, MotionKind::velocity, MotionKind::torque, MotionKind::homing}) {
     for (const auto& [end, how] : ends) {
@@ -108,14 +108,14 @@ TEST(MotionRules, AChangeOfTheModeEndsWhatRanInTheModeBefore) {
 
 TEST(MotionRules, TargetsWrittenWhileDisabledAreKeptForTheStart) {
   Stage s;
-  s.facts.state = State402::switch_on_disabled;
+  s.facts.state = model::State402::switch_on_disabled;
   s.see();
   s.motion.want(Quantity::target_velocity, {1'000});
   for (int i = 0; i < 5; ++i) s.see();
-  s.facts.state = State402::operation_enabled;
+  s.facts.state = model::State402::operation_enabled;
   s.see();
   ASSERT_TRUE(s.motion.wanted(Quantity::target_velocity));
-  s.facts.state = State402::switch_on_disabled;
+  s.facts.state = model::State402::switch_on_disabled;
   s.see();
   EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity)) << "a disable came after";
 }
@@ -186,9 +186,9 @@ TEST(MotionRules, WhatIsFoundRunningFollowsTheTargetOfItsModeUntilAnythingEndsIt
   changed.motion.mode_changed();
   EXPECT_FALSE(acts(changed, kVelocity));
   Stage enabled;
-  enabled.facts.state = State402::switched_on;
+  enabled.facts.state = model::State402::switched_on;
   enabled.see();
-  enabled.facts.state = State402::operation_enabled;
+  enabled.facts.state = model::State402::operation_enabled;
   enabled.facts.mode = 3;
   enabled.facts.follows = true;
   enabled.see();
@@ -200,18 +200,18 @@ TEST(MotionRules, TheLatchIsLeftByTheTwoStepsInTheirOrder) {
   s.motion.stop(true, s.facts.at);
   EXPECT_FALSE(s.motion.may_start(s.facts));
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping);
-  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::refused);
-  EXPECT_EQ(s.motion.pass(Request402::other), Motion::Pass::refused);
-  s.motion.passed(Request402::enable_operation);
+  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::refused);
+  EXPECT_EQ(s.motion.pass(model::Request402::other), Motion::Pass::refused);
+  s.motion.passed(model::Request402::enable_operation);
   EXPECT_TRUE(s.motion.latched());
-  s.motion.passed(Request402::quick_stop);
-  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::refused);
-  s.motion.passed(Request402::shutdown);
-  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::passes_and_unlatches);
+  s.motion.passed(model::Request402::quick_stop);
+  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::refused);
+  s.motion.passed(model::Request402::shutdown);
+  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::passes_and_unlatches);
   s.motion.stop(true, s.facts.at);
-  EXPECT_EQ(s.motion.pass(Request402::enable_operation), Motion::Pass::refused) << "another stop came between";
-  s.motion.passed(Request402::switch_on);
-  s.motion.passed(Request402::enable_operation);
+  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::refused) << "another stop came between";
+  s.motion.passed(model::Request402::switch_on);
+  s.motion.passed(model::Request402::enable_operation);
   EXPECT_FALSE(s.motion.latched());
 }
 
@@ -314,7 +314,7 @@ TEST(MotionRules, AnAxisThatMovesWithoutAStartOfOursIsNotSaidToStand) {
   s.motion.stop(false, s.facts.at);
   s.see();
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping);
-  s.facts.state = State402::switch_on_disabled;
+  s.facts.state = model::State402::switch_on_disabled;
   s.see();
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::disabled);
 }

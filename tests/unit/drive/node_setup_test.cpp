@@ -18,14 +18,14 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::uint8_t kNode = 3;
-constexpr ObjectId kStatusword = 0, kPosition = 1, kTorque = 2;
+constexpr model::ObjectId kStatusword = 0, kPosition = 1, kTorque = 2;
 
-DriveModel model_with(std::vector<TpdoProperties> tpdos, std::vector<std::uint8_t> unused = {}) {
-  DriveModel model;
+model::DriveModel model_with(std::vector<model::TpdoProperties> tpdos, std::vector<std::uint8_t> unused = {}) {
+  model::DriveModel model;
   model.protocol = "canopen";
   model.node = kNode;
   const auto add = [&](const char* name, std::uint16_t index, std::uint8_t size) {
-    ObjectDef object;
+    model::ObjectDef object;
     object.name = name;
     object.address = {index, 0};
     object.size = size;
@@ -39,8 +39,8 @@ DriveModel model_with(std::vector<TpdoProperties> tpdos, std::vector<std::uint8_
   return model;
 }
 
-TpdoProperties tpdo(std::uint8_t number, std::vector<ObjectId> map) {
-  TpdoProperties facts;
+model::TpdoProperties tpdo(std::uint8_t number, std::vector<model::ObjectId> map) {
+  model::TpdoProperties facts;
   facts.number = number;
   facts.map = std::move(map);
   facts.inhibit = 50;
@@ -50,11 +50,11 @@ TpdoProperties tpdo(std::uint8_t number, std::vector<ObjectId> map) {
 
 /// A node's communication objects, with the rules of CiA 301 that a mapping must keep.
 struct Dictionary {
-  std::map<bus::ObjectAddress, std::uint32_t> values{
+  std::map<ObjectAddress, std::uint32_t> values{
       {{0x1800, 1}, 0xC0000183}, {{0x1A00, 0}, 2}, {{0x1801, 1}, 0x80000283}, {{0x1A01, 0}, 0}, {{0x1802, 1}, 0x383}};
-  std::map<std::pair<bus::ObjectAddress, std::uint32_t>, std::uint32_t> refused_values{};  ///< value -> abort code
-  std::map<bus::ObjectAddress, std::uint32_t> refused_writes{};
-  std::set<bus::ObjectAddress> forgets{};  ///< acknowledges a write and keeps what it had
+  std::map<std::pair<ObjectAddress, std::uint32_t>, std::uint32_t> refused_values{};  ///< value -> abort code
+  std::map<ObjectAddress, std::uint32_t> refused_writes{};
+  std::set<ObjectAddress> forgets{};  ///< acknowledges a write and keeps what it had
   std::vector<std::uint32_t> commands{};
   std::vector<std::string> broken_rules{};
 
@@ -87,7 +87,7 @@ struct Dictionary {
   }
 };
 
-NodeSetup carried_out(const DriveModel& model, Dictionary& dictionary) {
+NodeSetup carried_out(const model::DriveModel& model, Dictionary& dictionary) {
   NodeSetup setup(model);
   setup.begin();
   constexpr int kLongest = 200;
@@ -102,7 +102,7 @@ NodeSetup carried_out(const DriveModel& model, Dictionary& dictionary) {
 }
 
 TEST(NodeSetup, MapsInPreOperationalAndStartsTheNodeAtTheEnd) {
-  const DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
+  const model::DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
   Dictionary drive;
   const NodeSetup setup = carried_out(model, drive);
   EXPECT_THAT(drive.broken_rules, IsEmpty());
@@ -119,7 +119,7 @@ TEST(NodeSetup, MapsInPreOperationalAndStartsTheNodeAtTheEnd) {
 }
 
 TEST(NodeSetup, AnObjectThatCannotBeMappedCostsThatObjectAlone) {
-  const DriveModel model = model_with({tpdo(1, {kStatusword, kTorque, kPosition})});
+  const model::DriveModel model = model_with({tpdo(1, {kStatusword, kTorque, kPosition})});
   Dictionary drive;
   drive.refused_values[{{0x1A00, 2}, 0x60770010}] = 0x06040041;
   const NodeSetup setup = carried_out(model, drive);
@@ -130,7 +130,7 @@ TEST(NodeSetup, AnObjectThatCannotBeMappedCostsThatObjectAlone) {
 }
 
 TEST(NodeSetup, ADriveWithoutAnEventTimerIsMappedAllTheSame) {
-  const DriveModel model = model_with({tpdo(1, {kStatusword})});
+  const model::DriveModel model = model_with({tpdo(1, {kStatusword})});
   Dictionary drive;
   drive.refused_writes[{0x1800, 5}] = 0x06090011;
   const NodeSetup setup = carried_out(model, drive);
@@ -139,10 +139,10 @@ TEST(NodeSetup, ADriveWithoutAnEventTimerIsMappedAllTheSame) {
 }
 
 TEST(NodeSetup, AnyOtherRefusalLeavesThatTpdoOffAndGoesOnWithTheNext) {
-  const std::vector<bus::ObjectAddress> steps{{0x1800, 1}, {0x1A00, 0}, {0x1800, 2}};
-  for (const bus::ObjectAddress step : steps) {
+  const std::vector<ObjectAddress> steps{{0x1800, 1}, {0x1A00, 0}, {0x1800, 2}};
+  for (const ObjectAddress step : steps) {
     SCOPED_TRACE(testing::PrintToString(step.index) + ":" + testing::PrintToString(int{step.sub}));
-    const DriveModel model = model_with({tpdo(1, {kStatusword}), tpdo(2, {kPosition})});
+    const model::DriveModel model = model_with({tpdo(1, {kStatusword}), tpdo(2, {kPosition})});
     Dictionary drive;
     drive.refused_writes[step] = 0x08000022;
     const NodeSetup setup = carried_out(model, drive);
@@ -153,7 +153,7 @@ TEST(NodeSetup, AnyOtherRefusalLeavesThatTpdoOffAndGoesOnWithTheNext) {
 }
 
 TEST(NodeSetup, ATpdoThatTheDriveDoesNotHaveIsPolled) {
-  const DriveModel model = model_with({tpdo(4, {kStatusword})});
+  const model::DriveModel model = model_with({tpdo(4, {kStatusword})});
   Dictionary drive;
   const NodeSetup setup = carried_out(model, drive);
   EXPECT_THAT(setup.mapped(), IsEmpty());
@@ -161,9 +161,8 @@ TEST(NodeSetup, ATpdoThatTheDriveDoesNotHaveIsPolled) {
 }
 
 TEST(NodeSetup, ATpdoWhoseMappingDoesNotReadBackIsNotTrusted) {
-  for (const bus::ObjectAddress forgotten :
-       {bus::ObjectAddress{0x1A00, 0}, bus::ObjectAddress{0x1A00, 2}, bus::ObjectAddress{0x1800, 1}}) {
-    const DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
+  for (const ObjectAddress forgotten : {ObjectAddress{0x1A00, 0}, ObjectAddress{0x1A00, 2}, ObjectAddress{0x1800, 1}}) {
+    const model::DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
     Dictionary drive;
     drive.values[{0x1800, 1}] = 0x80000183;
     drive.values[{0x1A00, 0}] = 0;
@@ -176,7 +175,7 @@ TEST(NodeSetup, ATpdoWhoseMappingDoesNotReadBackIsNotTrusted) {
 }
 
 TEST(NodeSetup, AnUnusedTpdoThatIsOnIsSwitchedOffAndOneThatIsNotThereIsLeftAlone) {
-  const DriveModel model = model_with({}, {2, 3, 4});
+  const model::DriveModel model = model_with({}, {2, 3, 4});
   Dictionary drive;
   const NodeSetup setup = carried_out(model, drive);
   EXPECT_EQ((drive.values[{0x1802, 1}]), 0x80000383U);
@@ -186,7 +185,7 @@ TEST(NodeSetup, AnUnusedTpdoThatIsOnIsSwitchedOffAndOneThatIsNotThereIsLeftAlone
 }
 
 TEST(NodeSetup, WhatWasLostIsAskedOnceMoreAndNothingIsSkipped) {
-  const DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
+  const model::DriveModel model = model_with({tpdo(1, {kStatusword, kPosition})});
   Dictionary drive;
   NodeSetup setup(model);
   setup.begin();
@@ -198,7 +197,7 @@ TEST(NodeSetup, WhatWasLostIsAskedOnceMoreAndNothingIsSkipped) {
 }
 
 TEST(IdentityCheck, OnlyTheConfiguredNumbersAreReadAndEachDifferenceIsTold) {
-  DriveModel model = model_with({});
+  model::DriveModel model = model_with({});
   model.canopen.identity = {0x4321, std::nullopt, 7, 99};
   IdentityCheck check(model);
   check.begin();
@@ -218,7 +217,7 @@ TEST(IdentityCheck, OnlyTheConfiguredNumbersAreReadAndEachDifferenceIsTold) {
 }
 
 TEST(IdentityCheck, WithoutAConfiguredIdentityNothingIsRead) {
-  const DriveModel model = model_with({});
+  const model::DriveModel model = model_with({});
   IdentityCheck check(model);
   check.begin();
   EXPECT_FALSE(check.next());

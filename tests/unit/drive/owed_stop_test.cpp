@@ -16,7 +16,7 @@ namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
-using enum State402;
+using enum model::State402;
 using End = OwedStop::End;
 
 TEST(OwedStop, IsNotSentBeforeTheAxisWasReadEnabledAfterIt) {
@@ -44,7 +44,8 @@ TEST(OwedStop, IsSentAgainAtItsPaceAndOnlyAfterAFreshRead) {
 }
 
 TEST(OwedStop, IsDischargedByAnyStateWithoutTorque) {
-  for (const State402 state : {not_ready_to_switch_on, switch_on_disabled, ready_to_switch_on, switched_on, fault}) {
+  for (const model::State402 state :
+       {not_ready_to_switch_on, switch_on_disabled, ready_to_switch_on, switched_on, fault}) {
     OwedStop owed;
     owed.accepted(StopKind::quick_stop, 1);
     EXPECT_EQ(owed.state_read(state, 2), End::disabled) << text(state);
@@ -231,7 +232,7 @@ TEST(OwedStop, KeepsItsPromisesThroughEveryShortSequence) {
 // --- A state may show a stop that stops nothing ----------------------------------------------------------------------
 
 TEST(OwedStop, IsNotShownByAStateInWhichTheMotorTurns) {
-  for (const State402 state : {State402::quick_stop_active, State402::switch_on_disabled}) {
+  for (const model::State402 state : {model::State402::quick_stop_active, model::State402::switch_on_disabled}) {
     OwedStop owed;
     owed.accepted(StopKind::quick_stop, 1);
     owed.sending();
@@ -245,8 +246,8 @@ TEST(OwedStop, IsNotShownByAStateInWhichTheMotorTurns) {
 TEST(OwedStop, ThatWasShownIsOwedAnewWhereTheMotorTurnsOn) {
   OwedStop owed;
   owed.unheeded(StopKind::quick_stop, 5);
-  EXPECT_EQ(owed.state_read(State402::quick_stop_active, 5, false), OwedStop::End::none) << "of before";
-  EXPECT_EQ(owed.state_read(State402::quick_stop_active, 6, true), OwedStop::End::none);
+  EXPECT_EQ(owed.state_read(model::State402::quick_stop_active, 5, false), OwedStop::End::none) << "of before";
+  EXPECT_EQ(owed.state_read(model::State402::quick_stop_active, 6, true), OwedStop::End::none);
   EXPECT_EQ(owed.due(Instant{}), StopKind::quick_stop);
 }
 

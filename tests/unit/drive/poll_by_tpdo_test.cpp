@@ -11,19 +11,19 @@ namespace {
 using namespace std::chrono_literals;
 
 /// One object of class fast (20 ms).
-DriveModel one_value() {
-  DriveModel model;
+model::DriveModel one_value() {
+  model::DriveModel model;
   model.objects.resize(1);
   model.axes.resize(1);
-  Binding binding;
+  model::Binding binding;
   binding.object = 0;
-  binding.poll = PollClass::fast;
+  binding.poll = model::PollClass::fast;
   model.axes[0].bindings.push_back(binding);
   return model;
 }
 
 TEST(PollByTpdo, AValueThatKeepsComingIsNotAskedFor) {
-  const DriveModel model = one_value();
+  const model::DriveModel model = one_value();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.map(0, 100ms, 1s);
@@ -34,7 +34,7 @@ TEST(PollByTpdo, AValueThatKeepsComingIsNotAskedFor) {
 }
 
 TEST(PollByTpdo, WithoutAnEventTimerItIsReadOnceInConfirm) {
-  const DriveModel model = one_value();
+  const model::DriveModel model = one_value();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.map(0, std::nullopt, 1s);
@@ -47,7 +47,7 @@ TEST(PollByTpdo, WithoutAnEventTimerItIsReadOnceInConfirm) {
 }
 
 TEST(PollByTpdo, ASilenceMayBeShortenedForAWhile) {
-  const DriveModel model = one_value();
+  const model::DriveModel model = one_value();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.map(0, std::nullopt, 1s);
@@ -66,7 +66,7 @@ TEST(PollByTpdo, ASilenceMayBeShortenedForAWhile) {
 }
 
 TEST(PollByTpdo, WithAnEventTimerThreeMissedOnesBringThePollBack) {
-  const DriveModel model = one_value();
+  const model::DriveModel model = one_value();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.map(0, 100ms, 1s);
@@ -79,7 +79,7 @@ TEST(PollByTpdo, WithAnEventTimerThreeMissedOnesBringThePollBack) {
 }
 
 TEST(PollByTpdo, OneThatStopsComingForGoodIsPolledAsIfItNeverHad) {
-  const DriveModel model = one_value();
+  const model::DriveModel model = one_value();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.map(0, std::nullopt, 1s);
@@ -93,7 +93,7 @@ TEST(PollByTpdo, OneThatStopsComingForGoodIsPolledAsIfItNeverHad) {
 }
 
 TEST(PollByTpdo, WhatTheDriveDoesNotHaveStaysDropped) {
-  const DriveModel model = one_value();
+  const model::DriveModel model = one_value();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.map(0, std::nullopt, 1s);

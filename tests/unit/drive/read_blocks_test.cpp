@@ -13,29 +13,29 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 
 /// Registers 100, 101 (32 bits), 103, 104, 110 of one class, 105 of another; one run from 100 to 105.
-DriveModel registers() {
-  DriveModel model;
+model::DriveModel registers() {
+  model::DriveModel model;
   model.rtu.runs = {{100, 105}};
   model.rtu.max_registers = 8;
   model.axes.resize(1);
-  AxisModel& axis = model.axes[0];
-  const auto add = [&](std::uint16_t index, std::uint8_t size, PollClass poll) {
-    ObjectDef object;
+  model::AxisModel& axis = model.axes[0];
+  const auto add = [&](std::uint16_t index, std::uint8_t size, model::PollClass poll) {
+    model::ObjectDef object;
     object.address = {index, 0};
     object.size = size;
-    Binding binding;
+    model::Binding binding;
     binding.quantity = static_cast<Quantity>(axis.bindings.size());
-    binding.object = static_cast<ObjectId>(model.objects.size());
+    binding.object = static_cast<model::ObjectId>(model.objects.size());
     binding.poll = poll;
     axis.bindings.push_back(binding);
     model.objects.push_back(object);
   };
-  add(103, 2, PollClass::fast);
-  add(100, 2, PollClass::fast);
-  add(101, 4, PollClass::fast);
-  add(104, 2, PollClass::fast);
-  add(105, 2, PollClass::slow);
-  add(110, 2, PollClass::fast);
+  add(103, 2, model::PollClass::fast);
+  add(100, 2, model::PollClass::fast);
+  add(101, 4, model::PollClass::fast);
+  add(104, 2, model::PollClass::fast);
+  add(105, 2, model::PollClass::slow);
+  add(110, 2, model::PollClass::fast);
   return model;
 }
 
@@ -46,12 +46,12 @@ std::vector<int> registers_of(const bus::Exchange& exchange) {
 }
 
 std::vector<int> widened(const ReadBlocks& blocks, bus::Exchange exchange) {
-  blocks.widen(exchange, [](ObjectId) { return true; });
+  blocks.widen(exchange, [](model::ObjectId) { return true; });
   return registers_of(exchange);
 }
 
 TEST(ReadBlocks, NeighboursOfOneClassGoIntoOneRequest) {
-  const DriveModel model = registers();
+  const model::DriveModel model = registers();
   const ReadBlocks blocks(model);
   EXPECT_THAT(widened(blocks, reading(104)), ElementsAre(100, 101, 103, 104));
   EXPECT_THAT(widened(blocks, reading(101, 4)), ElementsAre(100, 101, 103, 104));
@@ -60,16 +60,16 @@ TEST(ReadBlocks, NeighboursOfOneClassGoIntoOneRequest) {
 }
 
 TEST(ReadBlocks, OnlyWhatIsWantedComesAlong) {
-  const DriveModel model = registers();
+  const model::DriveModel model = registers();
   const ReadBlocks blocks(model);
   bus::Exchange exchange = reading(104);
-  blocks.widen(exchange, [](ObjectId id) { return id == 2; });
+  blocks.widen(exchange, [](model::ObjectId id) { return id == 2; });
   EXPECT_THAT(registers_of(exchange), ElementsAre(101, 104));
   EXPECT_EQ(exchange.size, 4) << "the first one's own width";
 }
 
 TEST(ReadBlocks, NeverExceedsWhatTheDriveReadsAtOnce) {
-  DriveModel model = registers();
+  model::DriveModel model = registers();
   model.rtu.max_registers = 3;
   const ReadBlocks blocks(model);
   EXPECT_THAT(widened(blocks, reading(100)), ElementsAre(100, 101));
@@ -77,14 +77,14 @@ TEST(ReadBlocks, NeverExceedsWhatTheDriveReadsAtOnce) {
 }
 
 TEST(ReadBlocks, AWriteOrAnotherWidthIsLeftAlone) {
-  const DriveModel model = registers();
+  const model::DriveModel model = registers();
   const ReadBlocks blocks(model);
   EXPECT_THAT(widened(blocks, {1, bus::Access::write, {100, 0}, 2, 5}), ElementsAre(100));
   EXPECT_THAT(widened(blocks, reading(100, 4)), ElementsAre(100)) << "the mailbox asks for two registers";
 }
 
 TEST(ReadBlocks, ARefusedRunIsSplitUntilTheBadRegisterStandsAloneAndStaysSo) {
-  const DriveModel model = registers();
+  const model::DriveModel model = registers();
   ReadBlocks blocks(model);
   const auto drive_refuses = [](const bus::Exchange& exchange) {
     const auto read = registers_of(exchange);
@@ -94,7 +94,7 @@ TEST(ReadBlocks, ARefusedRunIsSplitUntilTheBadRegisterStandsAloneAndStaysSo) {
   bus::Exchange exchange = reading(100);
   do {
     exchange = reading(103);
-    blocks.widen(exchange, [](ObjectId) { return true; });
+    blocks.widen(exchange, [](model::ObjectId) { return true; });
     ASSERT_LT(++asked, 5);
   } while (drive_refuses(exchange) && blocks.refused(exchange));
   EXPECT_THAT(registers_of(exchange), ElementsAre(103)) << "refused alone: now it is the drive's last word";
@@ -103,10 +103,10 @@ TEST(ReadBlocks, ARefusedRunIsSplitUntilTheBadRegisterStandsAloneAndStaysSo) {
 }
 
 TEST(ReadBlocks, SilenceToALongReadCountsAsARefusalTheSecondTime) {
-  const DriveModel model = registers();
+  const model::DriveModel model = registers();
   ReadBlocks blocks(model);
   bus::Exchange exchange = reading(100);
-  blocks.widen(exchange, [](ObjectId) { return true; });
+  blocks.widen(exchange, [](model::ObjectId) { return true; });
   EXPECT_FALSE(blocks.silent(exchange));
   blocks.answered(exchange);
   EXPECT_FALSE(blocks.silent(exchange)) << "an answer between makes it the first time again";
@@ -122,42 +122,42 @@ TEST(ReadBlocks, ThePlanListsEachRequestOnce) {
 
 TEST(NvmBudget, TenAtOnceThenOneAMinute) {
   NvmBudget budget;
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(budget.take(Nvm::yes, kStart)) << i;
-  EXPECT_FALSE(budget.take(Nvm::yes, kStart));
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(budget.take(model::Nvm::yes, kStart)) << i;
+  EXPECT_FALSE(budget.take(model::Nvm::yes, kStart));
   EXPECT_TRUE(budget.alarm(kStart));
-  EXPECT_FALSE(budget.take(Nvm::yes, kStart + 59s));
-  EXPECT_TRUE(budget.take(Nvm::yes, kStart + 60s));
-  EXPECT_FALSE(budget.take(Nvm::yes, kStart + 61s));
+  EXPECT_FALSE(budget.take(model::Nvm::yes, kStart + 59s));
+  EXPECT_TRUE(budget.take(model::Nvm::yes, kStart + 60s));
+  EXPECT_FALSE(budget.take(model::Nvm::yes, kStart + 61s));
   EXPECT_EQ(budget.stored(), 11U);
 }
 
 TEST(NvmBudget, IsWholeAgainAfterTenQuietMinutes) {
   NvmBudget budget;
-  for (int i = 0; i < 10; ++i) ASSERT_TRUE(budget.take(Nvm::yes, kStart));
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(budget.take(Nvm::yes, kStart + 10min));
-  EXPECT_FALSE(budget.take(Nvm::yes, kStart + 10min));
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(budget.take(model::Nvm::yes, kStart));
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(budget.take(model::Nvm::yes, kStart + 10min));
+  EXPECT_FALSE(budget.take(model::Nvm::yes, kStart + 10min));
 }
 
 TEST(NvmBudget, TheAlarmEndsWhenAWriteMayBeSentAgain) {
   NvmBudget budget;
-  for (int i = 0; i < 11; ++i) static_cast<void>(budget.take(Nvm::yes, kStart));
+  for (int i = 0; i < 11; ++i) static_cast<void>(budget.take(model::Nvm::yes, kStart));
   EXPECT_TRUE(budget.alarm(kStart + 59s));
   EXPECT_FALSE(budget.alarm(kStart + 60s));
 }
 
 TEST(NvmBudget, AYearOfAWriteEachSecondStaysBelowWhatMemoryStands) {
   NvmBudget budget;
-  for (Instant now = kStart; now < kStart + 24h; now += 1s) static_cast<void>(budget.take(Nvm::yes, now));
+  for (Instant now = kStart; now < kStart + 24h; now += 1s) static_cast<void>(budget.take(model::Nvm::yes, now));
   EXPECT_LE(budget.stored(), 24U * 60U + 10U) << "1,450 a day: a million in almost two years, with an alarm all along";
 }
 
 TEST(NvmBudget, UnknownStorageIsCountedAndMemoryOfNoneIsFree) {
   NvmBudget budget;
-  for (std::uint32_t i = 0; i < NvmBudget::kManyUnknown - 1; ++i) ASSERT_TRUE(budget.take(Nvm::unknown, kStart));
+  for (std::uint32_t i = 0; i < NvmBudget::kManyUnknown - 1; ++i) ASSERT_TRUE(budget.take(model::Nvm::unknown, kStart));
   EXPECT_FALSE(budget.alarm(kStart));
-  EXPECT_TRUE(budget.take(Nvm::no, kStart));
+  EXPECT_TRUE(budget.take(model::Nvm::no, kStart));
   EXPECT_FALSE(budget.alarm(kStart));
-  EXPECT_TRUE(budget.take(Nvm::unknown, kStart)) << "counted, not refused";
+  EXPECT_TRUE(budget.take(model::Nvm::unknown, kStart)) << "counted, not refused";
   EXPECT_TRUE(budget.alarm(kStart));
 }
 

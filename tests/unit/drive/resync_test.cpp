@@ -8,7 +8,7 @@ namespace axisgate::drive {
 namespace {
 
 constexpr Instant kStart = kLongAgo + std::chrono::hours(1);
-constexpr ObjectId kShort = 0, kLong = 1;
+constexpr model::ObjectId kShort = 0, kLong = 1;
 
 bus::Exchange read(std::uint8_t bytes) { return {1, bus::Access::read, {}, bytes, 0}; }
 
@@ -24,7 +24,7 @@ class RtuResync : public testing::Test {
     for (int i = 0; i < times; ++i) resync.lost(read(bytes), kStart);
   }
   /// Reads of this object that are answered and not believed before another is.
-  int counted(ObjectId object) {
+  int counted(model::ObjectId object) {
     int answers = 0;
     for (; resync.suspect() && !resync.candidate(); ++answers) {
       EXPECT_EQ(resync.counted().object, object);
@@ -33,8 +33,8 @@ class RtuResync : public testing::Test {
     return answers;
   }
 
-  std::vector<ObjectDef> objects{2};
-  ResyncProperties facts;
+  std::vector<model::ObjectDef> objects{2};
+  model::ResyncProperties facts;
   Resync resync{facts, objects};
 };
 

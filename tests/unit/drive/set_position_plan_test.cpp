@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kName = "kinco-jd";
 
 /// The shipped profile, but for the steps of set_position.
-DriveModel foreign(const char* steps) {
+model::DriveModel foreign(const char* steps) {
   // It extends the shipped one of its own name, which lies in another folder.
   const nlohmann::json profile{
       {"profile", 1},
@@ -29,19 +29,19 @@ DriveModel foreign(const char* steps) {
   std::filesystem::create_directories(folder);
   const std::string path = (folder / (std::string(kName) + ".json")).string();
   std::ofstream(path) << profile;
-  const LoadedProfile loaded = load_profile(path, {test::source_path("schemas/drives")});
+  const profile::LoadedProfile loaded = profile::load_profile(path, {test::source_path("schemas/drives")});
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
-  ResolveInput input;
+  profile::ResolveInput input;
   input.protocol = "canopen";
   input.node = 1;
   input.constants.emplace("peak_current_a", Rational(275, 10));
-  ResolveAxis axis;
+  profile::ResolveAxis axis;
   axis.number = 1;
   axis.name = "axis 1";
   input.axes = {axis};
-  auto model = resolve(loaded, input);
-  if (auto* faults = std::get_if<std::vector<Fault>>(&model)) throw std::runtime_error(text(faults->front()));
-  return std::get<DriveModel>(std::move(model));
+  auto model = profile::resolve(loaded, input);
+  if (auto* faults = std::get_if<std::vector<profile::Fault>>(&model)) throw std::runtime_error(text(faults->front()));
+  return std::get<model::DriveModel>(std::move(model));
 }
 
 class SetPosition : public testing::Test {
@@ -60,16 +60,16 @@ class SetPosition : public testing::Test {
   }
   void in_mode(std::int64_t mode) {
     store.read(core.model.mode, mode, turn.now);
-    if (core.model.mode_display != kNoObject) store.read(core.model.mode_display, mode, turn.now);
+    if (core.model.mode_display != model::kNoObject) store.read(core.model.mode_display, mode, turn.now);
   }
-  [[nodiscard]] static long place_of(const Plan& plan, ObjectId object, std::int64_t number) {
+  [[nodiscard]] static long place_of(const Plan& plan, model::ObjectId object, std::int64_t number) {
     const auto at = std::find_if(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
       return a.kind == Action::Kind::write && a.object == object && a.number == number;
     });
     return at == plan.actions.end() ? -1 : at - plan.actions.begin();
   }
 
-  DriveModel model;
+  model::DriveModel model;
   ObjectStore store;
   Turn turn{.now = kLongAgo, .link = LinkState::online};
   AxisCore core{model, model.axes[0], store, turn};

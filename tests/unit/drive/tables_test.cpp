@@ -16,25 +16,27 @@ using testing::ElementsAre;
 TEST(Cia402, EachStatuswordFallsOnOneRowOfTheStandardsTable) {
   struct Row {
     std::uint16_t mask, value;
-    State402 state;
+    model::State402 state;
   };
   // IEC 61800-7-201 table 30, as printed: xxxx xxxx x0xx 0000 and so on.
   const std::vector<Row> table{
-      {0x4F, 0x00, State402::not_ready_to_switch_on}, {0x4F, 0x40, State402::switch_on_disabled},
-      {0x6F, 0x21, State402::ready_to_switch_on},     {0x6F, 0x23, State402::switched_on},
-      {0x6F, 0x27, State402::operation_enabled},      {0x6F, 0x07, State402::quick_stop_active},
-      {0x4F, 0x0F, State402::fault_reaction_active},  {0x4F, 0x08, State402::fault}};
+      {0x4F, 0x00, model::State402::not_ready_to_switch_on}, {0x4F, 0x40, model::State402::switch_on_disabled},
+      {0x6F, 0x21, model::State402::ready_to_switch_on},     {0x6F, 0x23, model::State402::switched_on},
+      {0x6F, 0x27, model::State402::operation_enabled},      {0x6F, 0x07, model::State402::quick_stop_active},
+      {0x4F, 0x0F, model::State402::fault_reaction_active},  {0x4F, 0x08, model::State402::fault}};
   for (std::uint32_t w = 0; w <= 0xFFFF; ++w) {
     const auto word = static_cast<std::uint16_t>(w);
-    std::vector<State402> rows;
+    std::vector<model::State402> rows;
     for (const Row& row : table)
       if ((word & row.mask) == row.value) rows.push_back(row.state);
     ASSERT_LE(rows.size(), 1U);
     if (!rows.empty()) {
-      ASSERT_EQ(state_of(word), rows.front()) << std::hex << w;
+      ASSERT_EQ(model::state_of(word), rows.front()) << std::hex << w;
     } else {
       // Impossible words: a fault bit is a fault, and no torque is ever concluded from the rest.
-      ASSERT_EQ(state_of(word), (word & 8) != 0 ? State402::fault : State402::not_ready_to_switch_on) << std::hex << w;
+      ASSERT_EQ(model::state_of(word),
+                (word & 8) != 0 ? model::State402::fault : model::State402::not_ready_to_switch_on)
+          << std::hex << w;
     }
   }
 }
@@ -42,21 +44,21 @@ TEST(Cia402, EachStatuswordFallsOnOneRowOfTheStandardsTable) {
 TEST(Cia402, EachControlwordAsksForOneThing) {
   for (std::uint32_t w = 0; w <= 0xFFFF; ++w) {
     const auto word = static_cast<std::uint16_t>(w);
-    const Request402 request = request_of(word);
-    ASSERT_EQ(request == Request402::disable_voltage, (word & 2) == 0);
-    ASSERT_EQ(request == Request402::quick_stop, (word & 6) == 2);
-    ASSERT_EQ(request == Request402::shutdown, (word & 0xF) == 6);
-    ASSERT_EQ(request == Request402::switch_on, (word & 0xF) == 7);
-    ASSERT_EQ(request == Request402::enable_operation, (word & 0xF) == 0xF);
+    const model::Request402 request = model::request_of(word);
+    ASSERT_EQ(request == model::Request402::disable_voltage, (word & 2) == 0);
+    ASSERT_EQ(request == model::Request402::quick_stop, (word & 6) == 2);
+    ASSERT_EQ(request == model::Request402::shutdown, (word & 0xF) == 6);
+    ASSERT_EQ(request == model::Request402::switch_on, (word & 0xF) == 7);
+    ASSERT_EQ(request == model::Request402::enable_operation, (word & 0xF) == 0xF);
     ASSERT_EQ(is_stop(word, false), (word & 2) == 0 || (word & 4) == 0);
     ASSERT_EQ(is_stop(word, true), (word & 2) == 0 || (word & 4) == 0 || (word & 0xF) == 6 || (word & 0xF) == 7);
   }
 }
 
-DriveModel five_objects() {
-  DriveModel model;
+model::DriveModel five_objects() {
+  model::DriveModel model;
   for (std::uint16_t i = 0; i < 5; ++i) {
-    ObjectDef object;
+    model::ObjectDef object;
     object.name = "o" + std::to_string(i);
     object.address = {static_cast<std::uint16_t>(0x2000 + i), 0};
     model.objects.push_back(object);
@@ -66,7 +68,7 @@ DriveModel five_objects() {
 }
 
 TEST(Resync, NeverUsesAnObjectWhoseReplyMayStillCome) {
-  const DriveModel model = five_objects();
+  const model::DriveModel model = five_objects();
   Resync resync(model.resync, model.objects);
   EXPECT_FALSE(resync.suspect());
   resync.lost(reading(0x2001), kStart);
@@ -87,7 +89,7 @@ TEST(Resync, NeverUsesAnObjectWhoseReplyMayStillCome) {
 }
 
 TEST(Resync, AnAnsweredOneProvesThatNothingOlderIsLeft) {
-  const DriveModel model = five_objects();
+  const model::DriveModel model = five_objects();
   Resync resync(model.resync, model.objects);
   resync.lost(reading(0x2001), kStart);
   resync.lost(reading(0x2004), kStart);
@@ -100,7 +102,7 @@ TEST(Resync, AnAnsweredOneProvesThatNothingOlderIsLeft) {
 
 // Modbus RTU: a reply to a read tells how long it is, and nothing else.
 TEST(Resync, TellsRepliesByTheirLengthWhereTheyNameNoObject) {
-  DriveModel model = five_objects();
+  model::DriveModel model = five_objects();
   model.resync = {{{1, 1}, {1, 2}, {1, 3}, {1, 4}}, true, 500ms};
   Resync resync(model.resync, model.objects);
   resync.lost(reading(0x2000), kStart);  // one register, of whatever object
@@ -116,7 +118,7 @@ TEST(Resync, TellsRepliesByTheirLengthWhereTheyNameNoObject) {
 }
 
 TEST(Resync, AWriteGivenUpMakesTheDriveSuspectThoughItsReplyIsLikeNoRead) {
-  DriveModel model = five_objects();
+  model::DriveModel model = five_objects();
   model.resync = {{{1, 1}, {1, 2}}, true, 500ms};
   Resync resync(model.resync, model.objects);
   resync.lost({1, bus::Access::write, {0x2000, 0}, 2, 7}, kStart);
@@ -126,7 +128,7 @@ TEST(Resync, AWriteGivenUpMakesTheDriveSuspectThoughItsReplyIsLikeNoRead) {
 
 // Kinco documents counts 1 and 2 and no other.
 TEST(Resync, WithBothLengthsLostOnlySilenceHelps) {
-  DriveModel model = five_objects();
+  model::DriveModel model = five_objects();
   model.resync = {{{1, 2}, {1, 1}}, true, 500ms};
   Resync resync(model.resync, model.objects);
   resync.lost(reading(0x2000, 2), kStart);
@@ -135,48 +137,48 @@ TEST(Resync, WithBothLengthsLostOnlySilenceHelps) {
   EXPECT_EQ(resync.silent_until(), kStart + 501ms);
 }
 
-DriveModel polled() {
-  DriveModel model = five_objects();
+model::DriveModel polled() {
+  model::DriveModel model = five_objects();
   model.axes.resize(1);
-  AxisModel& axis = model.axes[0];
+  model::AxisModel& axis = model.axes[0];
   axis.statusword = 0;
   axis.state_sources = {0};
-  const auto bind = [&](Quantity quantity, ObjectId object, PollClass poll) {
-    Binding binding;
+  const auto bind = [&](Quantity quantity, model::ObjectId object, model::PollClass poll) {
+    model::Binding binding;
     binding.quantity = quantity;
     binding.object = object;
     binding.poll = poll;
     axis.bindings.push_back(binding);
   };
-  bind(Quantity::statusword, 0, PollClass::slow);
-  bind(Quantity::velocity_actual, 1, PollClass::normal);
-  bind(Quantity::drive_temperature, 2, PollClass::slow);
-  bind(Quantity::profile_velocity, 3, PollClass::once);
+  bind(Quantity::statusword, 0, model::PollClass::slow);
+  bind(Quantity::velocity_actual, 1, model::PollClass::normal);
+  bind(Quantity::drive_temperature, 2, model::PollClass::slow);
+  bind(Quantity::profile_velocity, 3, model::PollClass::once);
   return model;
 }
 
 TEST(PollPlan, TheObjectLongestOverdueGoesFirst) {
-  const DriveModel model = polled();
+  const model::DriveModel model = polled();
   PollPlan plan(model);
   EXPECT_EQ(plan.next(kStart), std::nullopt);
   plan.restart(kStart);
-  for (ObjectId id = 0; id < 4; ++id) {
+  for (model::ObjectId id = 0; id < 4; ++id) {
     ASSERT_EQ(plan.next(kStart), id);
     plan.done(id, kStart);
   }
   EXPECT_EQ(plan.next(kStart), std::nullopt);
   EXPECT_EQ(plan.next_due(), kStart + 20ms) << "the statusword is never slower than fast";
-  EXPECT_EQ(plan.next(kStart + 5s), ObjectId{0});
+  EXPECT_EQ(plan.next(kStart + 5s), model::ObjectId{0});
   plan.done(0, kStart + 5s);
-  EXPECT_EQ(plan.next(kStart + 5s), ObjectId{1});
+  EXPECT_EQ(plan.next(kStart + 5s), model::ObjectId{1});
 }
 
 TEST(PollPlan, KeepsItsBeatButNeverCatchesUp) {
-  const DriveModel model = polled();
+  const model::DriveModel model = polled();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.done(0, kStart + 3ms);
-  for (ObjectId id = 1; id < 4; ++id) plan.done(id, kStart);
+  for (model::ObjectId id = 1; id < 4; ++id) plan.done(id, kStart);
   EXPECT_EQ(plan.next_due(), kStart + 20ms);
   plan.done(0, kStart + 26ms);
   EXPECT_EQ(plan.next_due(), kStart + 40ms);
@@ -188,22 +190,22 @@ TEST(PollPlan, KeepsItsBeatButNeverCatchesUp) {
 }
 
 TEST(PollPlan, OnceMeansOnceAndAgainAfterAWriteOrAnInvalidation) {
-  const DriveModel model = polled();
+  const model::DriveModel model = polled();
   PollPlan plan(model);
   plan.restart(kStart);
-  for (ObjectId id = 0; id < 4; ++id) plan.done(id, kStart);
+  for (model::ObjectId id = 0; id < 4; ++id) plan.done(id, kStart);
   plan.written(1, kStart);
   EXPECT_EQ(plan.next(kStart + 1ms), std::nullopt) << "what is polled anyway keeps its beat";
   plan.written(3, kStart);
-  EXPECT_EQ(plan.next(kStart + 1ms), ObjectId{3});
+  EXPECT_EQ(plan.next(kStart + 1ms), model::ObjectId{3});
   plan.done(3, kStart + 1ms);
   plan.refresh(kStart + 1ms);
   plan.done(0, kStart + 30ms);
-  EXPECT_EQ(plan.next(kStart + 30ms), ObjectId{3});
+  EXPECT_EQ(plan.next(kStart + 30ms), model::ObjectId{3});
 }
 
 TEST(PollPlan, WhatTheDriveRefusesIsNotAskedForUntilTheNextBringUp) {
-  const DriveModel model = polled();
+  const model::DriveModel model = polled();
   PollPlan plan(model);
   plan.restart(kStart);
   plan.drop(0);
@@ -214,7 +216,7 @@ TEST(PollPlan, WhatTheDriveRefusesIsNotAskedForUntilTheNextBringUp) {
   plan.done(2, kStart);
   EXPECT_EQ(plan.next(kStart + 50ms), std::nullopt);
   plan.restart(kStart + 1s);
-  EXPECT_EQ(plan.next(kStart + 1s), ObjectId{0});
+  EXPECT_EQ(plan.next(kStart + 1s), model::ObjectId{0});
 }
 
 TEST(Admission, KnowsAStopWhereverItStands) {
@@ -235,7 +237,7 @@ TEST(Admission, KnowsAStopWhereverItStands) {
 }
 
 TEST(Admission, TellsTheArbiterWhatABatchIs) {
-  const DriveModel model = polled();
+  const model::DriveModel model = polled();
   ObjectStore store(model.objects.size());
   const Turn turn;
   AxisCore core{model, model.axes[0], store, turn};

@@ -49,11 +49,11 @@ class Machine {
     look();
   }
   [[nodiscard]] std::uint16_t word() const { return axis.statusword(seen); }
-  [[nodiscard]] bool reached() const { return (word() & statusword::kTargetReached) != 0; }
+  [[nodiscard]] bool reached() const { return (word() & model::statusword::kTargetReached) != 0; }
 
   VirtualAxis axis;
   Seen seen;
-  VirtualProperties facts_;
+  model::VirtualProperties facts_;
 };
 
 TEST(VirtualAxis, GoesThroughTheStatesOfTheStandardByControlword) {
@@ -214,9 +214,9 @@ TEST(VirtualAxis, SetPointAcknowledgeFollowsBit4) {
   m.enable();
   m.control(0x1F);
   m.start(MotionKind::discrete, 5);
-  EXPECT_NE(m.word() & statusword::kSetpointAcknowledge, 0);
+  EXPECT_NE(m.word() & model::statusword::kSetpointAcknowledge, 0);
   m.control(0x0F);
-  EXPECT_EQ(m.word() & statusword::kSetpointAcknowledge, 0);
+  EXPECT_EQ(m.word() & model::statusword::kSetpointAcknowledge, 0);
 }
 
 TEST(VirtualAxis, AfterARestartNothingIsLeft) {

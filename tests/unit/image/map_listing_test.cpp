@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/image/listing/map_listing.hpp"
+#include "gateway/listing/map_listing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,31 +12,31 @@
 namespace axisgate {
 namespace {
 
-ListedMap two_axes() {
-  ListedMap map;
+listing::ListedMap two_axes() {
+  listing::ListedMap map;
   map.buses = {"lift-serial", "a \"quoted\", name"};
-  ListedAxis one;
+  listing::ListedAxis one;
   one.number = 1;
   one.name = "lift";
   one.bus = "lift-serial";
   one.supported = ~0U & ~bit(Quantity::motor_temperature);
   one.writable = one.supported & ~bit(Quantity::max_torque);
   one.supported_commands = 0x0FFE & ~(1U << 11);
-  ListedAxis five = one;
+  listing::ListedAxis five = one;
   five.number = 5;
-  five.position_unit = position_unit(360, 1);
+  five.position_unit = listing::position_unit(360, 1);
   map.axes = {one, five};
   return map;
 }
 
-const MapEntry* find(const std::vector<MapEntry>& entries, std::string_view table, int address) {
+const listing::MapEntry* find(const std::vector<listing::MapEntry>& entries, std::string_view table, int address) {
   const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const MapEntry& e) { return e.table == table && e.address == address; });
+                                  [&](const listing::MapEntry& e) { return e.table == table && e.address == address; });
   return found == entries.end() ? nullptr : &*found;
 }
 
 TEST(MapListing, PrintsTheEntryOfTheContractsExample) {
-  const std::string json = map_text(two_axes(), MapFormat::json);
+  const std::string json = listing::map_text(two_axes(), listing::MapFormat::json);
   EXPECT_NE(json.find(R"({"table":"holding","address":102,"count":2,"axis":1,"bus":null,"name":"position_actual",)"
                       R"("type":"i32","unit":"1/10000 rev","access":"r","supported":true})"),
             std::string::npos)
@@ -44,22 +44,22 @@ TEST(MapListing, PrintsTheEntryOfTheContractsExample) {
 }
 
 TEST(MapListing, JsonCarriesVersionWordOrderAndEveryEntry) {
-  ListedMap map = two_axes();
-  auto json = nlohmann::json::parse(map_text(map, MapFormat::json));
+  listing::ListedMap map = two_axes();
+  auto json = nlohmann::json::parse(listing::map_text(map, listing::MapFormat::json));
   EXPECT_EQ(json["map_version"], 1);
   EXPECT_EQ(json["word_order"], "high-first");
-  EXPECT_EQ(json["entries"].size(), map_entries(map).size());
+  EXPECT_EQ(json["entries"].size(), listing::map_entries(map).size());
   map.low_word_first = true;
-  EXPECT_EQ(nlohmann::json::parse(map_text(map, MapFormat::json))["word_order"], "low-first");
+  EXPECT_EQ(nlohmann::json::parse(listing::map_text(map, listing::MapFormat::json))["word_order"], "low-first");
 }
 
 TEST(MapListing, CountsEveryRowOfEveryBlock) {
   // gateway 9; per axis 65 registers, 8 of the overview, 10 coils, 13 inputs; per bus 15.
-  EXPECT_EQ(map_entries(two_axes()).size(), 9U + 2U * (65 + 8 + 10 + 13) + 2U * 15);
+  EXPECT_EQ(listing::map_entries(two_axes()).size(), 9U + 2U * (65 + 8 + 10 + 13) + 2U * 15);
 }
 
 TEST(MapListing, IsSortedByTableAndAddressAndNamesNoAddressTwice) {
-  const auto entries = map_entries(two_axes());
+  const auto entries = listing::map_entries(two_axes());
   std::set<std::pair<std::string_view, int>> seen;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     for (int part = 0; part < entries[i].count; ++part)
@@ -72,14 +72,14 @@ TEST(MapListing, IsSortedByTableAndAddressAndNamesNoAddressTwice) {
 
 TEST(MapListing, AxisAndNameTogetherAreOneAddressOfATable) {
   std::set<std::string> seen;
-  for (const MapEntry& entry : map_entries(two_axes())) {
+  for (const listing::MapEntry& entry : listing::map_entries(two_axes())) {
     if (!entry.axis) continue;
     EXPECT_TRUE(seen.insert(std::string(entry.table) + std::to_string(*entry.axis) + entry.name).second) << entry.name;
   }
 }
 
 TEST(MapListing, SaysWhatTheDriveHasAndWhatCanBeWritten) {
-  const auto entries = map_entries(two_axes());
+  const auto entries = listing::map_entries(two_axes());
   EXPECT_FALSE(find(entries, "holding", 116)->supported) << "motor_temperature";
   EXPECT_TRUE(find(entries, "holding", 142)->supported);
   EXPECT_EQ(find(entries, "holding", 142)->access, "rw");
@@ -90,29 +90,29 @@ TEST(MapListing, SaysWhatTheDriveHasAndWhatCanBeWritten) {
   EXPECT_TRUE(find(entries, "coil", 106)->supported);
   EXPECT_TRUE(find(entries, "coil", 108)->supported) << "jog_forward";
   EXPECT_TRUE(find(entries, "discrete", 511)->supported);
-  ListedMap without_velocity = two_axes();
+  listing::ListedMap without_velocity = two_axes();
   without_velocity.axes[0].supported_commands &= ~(1U << 8);
-  const auto others = map_entries(without_velocity);
+  const auto others = listing::map_entries(without_velocity);
   EXPECT_FALSE(find(others, "holding", 158)->supported) << "jogging is running at a velocity";
   EXPECT_FALSE(find(others, "coil", 109)->supported);
 }
 
 TEST(MapListing, PrintsPositionsInTheAxissOwnUnit) {
-  const auto entries = map_entries(two_axes());
+  const auto entries = listing::map_entries(two_axes());
   EXPECT_EQ(find(entries, "holding", 502)->unit, "1/360 rev");
   EXPECT_EQ(find(entries, "holding", 578)->unit, "1/360 rev");
   EXPECT_EQ(find(entries, "holding", 60052)->unit, "1/360 rev");
   EXPECT_EQ(find(entries, "holding", 104)->unit, "0.001 rpm");
-  EXPECT_EQ(position_unit(60000, 37), "37/60000 rev");
+  EXPECT_EQ(listing::position_unit(60000, 37), "37/60000 rev");
 }
 
 TEST(MapListing, OfAListenerWithFloatsNamesTheirTypeAndUnit) {
-  ListedMap map = two_axes();
-  EXPECT_EQ(map_text(map, MapFormat::json).find("numbers"), std::string::npos);
+  listing::ListedMap map = two_axes();
+  EXPECT_EQ(listing::map_text(map, listing::MapFormat::json).find("numbers"), std::string::npos);
   map.float_numbers = true;
-  const auto entries = map_entries(map);
+  const auto entries = listing::map_entries(map);
   const auto told = [&](int address) {
-    const MapEntry* const entry = find(entries, "holding", address);
+    const listing::MapEntry* const entry = find(entries, "holding", address);
     return std::string(entry->type) + " " + entry->unit;
   };
   EXPECT_EQ(told(502), "f32 rev");
@@ -125,16 +125,16 @@ TEST(MapListing, OfAListenerWithFloatsNamesTheirTypeAndUnit) {
   EXPECT_EQ(told(120), "u32 ");
   // The rows of design 3.1 Panels, and no others.
   std::set<int> floats;
-  for (const MapEntry& entry : entries)
+  for (const listing::MapEntry& entry : entries)
     if (entry.type == "f32" && entry.address < 200) floats.insert(entry.address - 100);
   EXPECT_EQ(floats, (std::set<int>{2, 4, 8, 42, 44, 48, 50, 52, 58, 62, 64, 66, 68, 70, 72, 74, 76, 78}));
-  EXPECT_EQ(nlohmann::json::parse(map_text(map, MapFormat::json))["numbers"], "float");
-  EXPECT_NE(map_text(map, MapFormat::table).find("f32: IEEE 754"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(listing::map_text(map, listing::MapFormat::json))["numbers"], "float");
+  EXPECT_NE(listing::map_text(map, listing::MapFormat::table).find("f32: IEEE 754"), std::string::npos);
 }
 
 TEST(MapListing, NamesTheBusOfBusRowsAndNoAxis) {
-  const auto entries = map_entries(two_axes());
-  const MapEntry* entry = find(entries, "holding", 50104);
+  const auto entries = listing::map_entries(two_axes());
+  const listing::MapEntry* entry = find(entries, "holding", 50104);
   ASSERT_NE(entry, nullptr);
   EXPECT_EQ(entry->name, "requests");
   EXPECT_EQ(entry->bus, "a \"quoted\", name");
@@ -142,23 +142,23 @@ TEST(MapListing, NamesTheBusOfBusRowsAndNoAxis) {
 }
 
 TEST(MapListing, CsvHasTheColumnsOfTheContractAndQuotesWhatNeedsIt) {
-  const std::string csv = map_text(two_axes(), MapFormat::csv);
+  const std::string csv = listing::map_text(two_axes(), listing::MapFormat::csv);
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "table,address,count,axis,bus,name,type,unit,access,supported");
   EXPECT_NE(csv.find("holding,102,2,1,,position_actual,i32,1/10000 rev,r,true\n"), std::string::npos);
   EXPECT_NE(csv.find("holding,50100,1,,\"a \"\"quoted\"\", name\",link,u16,,r,true\n"), std::string::npos);
 }
 
 TEST(MapListing, MarkdownAndTableCarryTheSameRows) {
-  ListedMap piped = two_axes();
+  listing::ListedMap piped = two_axes();
   piped.buses[1] = "a|b";
-  const std::string markdown = map_text(piped, MapFormat::markdown);
+  const std::string markdown = listing::map_text(piped, listing::MapFormat::markdown);
   EXPECT_NE(markdown.find("| a\\|b |"), std::string::npos) << "a bar in a cell ends no cell";
   EXPECT_NE(markdown.find("| holding | 102 | 2 | 1 |  | position_actual | i32 | 1/10000 rev | r | true |"),
             std::string::npos);
-  const std::string table = map_text(two_axes(), MapFormat::table);
+  const std::string table = listing::map_text(two_axes(), listing::MapFormat::table);
   EXPECT_NE(table.find("axis 1: lift, on lift-serial\n"), std::string::npos);
   const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
-  const auto rows = static_cast<std::ptrdiff_t>(map_entries(two_axes()).size());
+  const auto rows = static_cast<std::ptrdiff_t>(listing::map_entries(two_axes()).size());
   EXPECT_EQ(lines(markdown), rows + 2);
   EXPECT_EQ(lines(table), rows + 1 + 4) << "a heading, and four lines of titles";
 }
@@ -166,7 +166,7 @@ TEST(MapListing, MarkdownAndTableCarryTheSameRows) {
 // Each line is one that the grammar of IEC 61131-3 allows, no identifier is there twice (they have no cases), and no
 // two variables share a register.
 TEST(MapListing, AsStructuredTextDeclaresEachRowOnceAtItsRegisters) {
-  ListedMap map = two_axes();
+  listing::ListedMap map = two_axes();
   map.buses[1] = "a (* bus *) called\nso";
   map.float_numbers = true;
   const std::string kName = "([a-z][a-z0-9]*(?:_[a-z0-9]+)*)";
@@ -175,7 +175,7 @@ TEST(MapListing, AsStructuredTextDeclaresEachRowOnceAtItsRegisters) {
   const std::regex whole_comment(R"(\(\* .* \*\))");
   std::set<std::string> names;
   std::set<int> registers;
-  std::istringstream text(map_text(map, MapFormat::structured_text));
+  std::istringstream text(listing::map_text(map, listing::MapFormat::structured_text));
   for (std::string line; std::getline(text, line);) {
     std::smatch found;
     const auto at = line.find("(* ");
@@ -197,13 +197,13 @@ TEST(MapListing, AsStructuredTextDeclaresEachRowOnceAtItsRegisters) {
     }
   }
   std::size_t holding = 0;
-  for (const MapEntry& entry : map_entries(map)) holding += entry.table == "holding" ? 1U : 0U;
-  EXPECT_EQ(names.size(), map_entries(map).size() + holding);
+  for (const listing::MapEntry& entry : listing::map_entries(map)) holding += entry.table == "holding" ? 1U : 0U;
+  EXPECT_EQ(names.size(), listing::map_entries(map).size() + holding);
 }
 
 TEST(MapListing, AsStructuredTextSaysWhatARowIs) {
-  ListedMap map = two_axes();
-  const std::string st = map_text(map, MapFormat::structured_text);
+  listing::ListedMap map = two_axes();
+  const std::string st = listing::map_text(map, listing::MapFormat::structured_text);
   EXPECT_NE(st.find("(* axis1: lift, on lift-serial *)\n"), std::string::npos);
   EXPECT_NE(st.find("  axis1_position_actual_adr : UINT := 102;\n"), std::string::npos);
   EXPECT_NE(st.find("  axis1_coil_start_absolute_adr : UINT := 104;\n"), std::string::npos);
@@ -215,17 +215,18 @@ TEST(MapListing, AsStructuredTextSaysWhatARowIs) {
             std::string::npos);
   EXPECT_NE(st.find("  bus1_link AT %MW50100 : UINT;"), std::string::npos);
   map.float_numbers = true;
-  EXPECT_NE(map_text(map, MapFormat::structured_text).find("  axis1_target_position AT %MD71 : REAL;  (* rw, rev *)\n"),
+  EXPECT_NE(listing::map_text(map, listing::MapFormat::structured_text)
+                .find("  axis1_target_position AT %MD71 : REAL;  (* rw, rev *)\n"),
             std::string::npos);
 }
 
 TEST(MapListing, KnowsItsFormatsByName) {
-  EXPECT_EQ(map_format_named("json"), MapFormat::json);
-  EXPECT_EQ(map_format_named("csv"), MapFormat::csv);
-  EXPECT_EQ(map_format_named("md"), MapFormat::markdown);
-  EXPECT_EQ(map_format_named("table"), MapFormat::table);
-  EXPECT_EQ(map_format_named("st"), MapFormat::structured_text);
-  EXPECT_FALSE(map_format_named("xml").has_value());
+  EXPECT_EQ(listing::map_format_named("json"), listing::MapFormat::json);
+  EXPECT_EQ(listing::map_format_named("csv"), listing::MapFormat::csv);
+  EXPECT_EQ(listing::map_format_named("md"), listing::MapFormat::markdown);
+  EXPECT_EQ(listing::map_format_named("table"), listing::MapFormat::table);
+  EXPECT_EQ(listing::map_format_named("st"), listing::MapFormat::structured_text);
+  EXPECT_FALSE(listing::map_format_named("xml").has_value());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "gateway/image/listing/map_page.hpp"
+#include "gateway/listing/map_page.hpp"
 #include "tests/places.hpp"
 
 namespace axisgate {
@@ -217,11 +217,11 @@ TEST(RegisterMap, ACoilNeedsTheCommandThatItAsksForAndJoggingARunAtAVelocity) {
 
 TEST(RegisterMapPage, IsTheOneInSchemas) {
   const std::string path = test::source_path("schemas/register-map.md");
-  if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << register_map_page();
+  if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << listing::register_map_page();
   std::ifstream file(path);
   std::stringstream text;
   text << file.rdbuf();
-  EXPECT_EQ(text.str(), register_map_page())
+  EXPECT_EQ(text.str(), listing::register_map_page())
       << "schemas/register-map.md is not what the table says. Write it anew with\n"
          "  AXISGATE_WRITE_PAGES=1 ctest --test-dir BUILD -R RegisterMapPage";
 }

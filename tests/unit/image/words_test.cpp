@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "gateway/core/error.hpp"
-#include "gateway/image/listing/map_page.hpp"
 #include "gateway/image/process_image.hpp"
+#include "gateway/listing/map_page.hpp"
 #include "tests/places.hpp"
 
 namespace axisgate {
@@ -65,7 +65,7 @@ TEST(Words, AreWhatTheRegisterMapTells) {
   EXPECT_EQ(list_of(motion_state), "0 none, 1 active, 2 completed, 3 aborted, 4 failed");
   EXPECT_THAT(list_of(result), testing::EndsWith("11 not_reached")) << "those of DDS are in no register";
   EXPECT_THAT(list_of(gateway_alarm), testing::StartsWith("bit 0 axis offline, 1 bus down, "));
-  const std::string page = register_map_page();
+  const std::string page = listing::register_map_page();
   for (const WordKind kind :
        {axis_state, motion_state, link_state, mode, axis_alarm, gateway_state, gateway_alarm, result})
     EXPECT_THAT(page, testing::HasSubstr(list_of(kind))) << title(kind);

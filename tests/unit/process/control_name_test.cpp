@@ -7,7 +7,7 @@
 
 #include "gateway/process/control_socket.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 std::string path_of(std::size_t length, char first = 'a') {
@@ -31,4 +31,4 @@ TEST(ControlName, OfTwoLongPathsWithTheSameEndingIsNotTheSame) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::process

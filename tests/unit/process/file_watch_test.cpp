@@ -11,7 +11,7 @@
 
 #include "tests/unit/support/manual_runtime.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ class FileWatching : public testing::Test {
     io_.run_one();
     return told_;
   }
-  void watch(std::vector<drive::FileRead> read) {
+  void watch(std::vector<profile::FileRead> read) {
     watch_.emplace(io_, runtime_, std::move(read), [this](const std::string& file) { told_ = file; });
   }
 
@@ -81,4 +81,4 @@ TEST_F(FileWatching, APipeInAFilesPlaceHoldsNobodyUp) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -4,7 +4,7 @@
 
 #include "gateway/process/reload.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 AxisImage axis_in(AxisState state, bool lease = false) {
@@ -37,4 +37,4 @@ TEST(ReloadClients, AJogAlwaysNeedsItsClient) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::process

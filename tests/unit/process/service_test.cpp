@@ -16,7 +16,7 @@
 
 #include "tests/unit/support/manual_runtime.hpp"
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 using namespace std::chrono_literals;
@@ -99,4 +99,4 @@ TEST(Service, WithoutAManagerNothingIsAsked) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::process

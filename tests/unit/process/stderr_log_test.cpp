@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace axisgate::app {
+namespace axisgate::process {
 namespace {
 
 using testing::HasSubstr;
@@ -129,4 +129,4 @@ TEST_F(UnderSystemd, WhatIsRedirectedHasItsOwnTime) {
 }
 
 }  // namespace
-}  // namespace axisgate::app
+}  // namespace axisgate::process

@@ -11,7 +11,7 @@
 #include "gateway/commands/manual/plan/manual_keys.hpp"
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 class JogButton {
  public:
@@ -62,4 +62,4 @@ class JogButton {
   Instant keys_count_from_ = kLongAgo;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

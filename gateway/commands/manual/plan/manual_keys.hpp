@@ -9,7 +9,7 @@
 
 #include "gateway/core/bytes.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 enum class ManualKey : std::uint8_t {
   forward,  ///< right or up, '+'
@@ -62,4 +62,4 @@ class ManualKeys {
   bool parameters_ = false;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

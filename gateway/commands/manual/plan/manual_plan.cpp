@@ -9,7 +9,7 @@
 
 #include "gateway/core/words.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr std::uint16_t kJogForward = jog_coil(Command::jog_forward), kJogReverse = jog_coil(Command::jog_reverse);
@@ -364,4 +364,4 @@ void ManualPlan::on_time(Instant now) {
   if (step_ == Step::standing || step_ == Step::stop) after_disable();
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -18,7 +18,7 @@
 #include "gateway/commands/view/manual_view.hpp"
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 enum class ManualTask : std::uint8_t { enable, move, jog, stop };
 [[nodiscard]] std::string_view text(ManualTask task);
@@ -176,4 +176,4 @@ class ManualPlan {
   std::string words_;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

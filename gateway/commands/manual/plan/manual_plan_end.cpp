@@ -6,7 +6,7 @@
 
 #include "gateway/commands/manual/plan/manual_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 // The end.
 
@@ -124,4 +124,4 @@ void ManualPlan::give_back() {
   go(Step::release);
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -4,7 +4,7 @@
 
 #include "gateway/commands/manual/plan/manual_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 ManualWrite ManualPlan::speed_write(const Rational& rpm) const {
   const bool jog = arguments_.task == ManualTask::jog;
@@ -70,4 +70,4 @@ void ManualPlan::note_dangers() {
                        : fmt::format("if the gateway dies the drive begins to stop by itself within {} ms", within));
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -5,7 +5,7 @@
 #include "gateway/commands/manual/plan/manual_plan.hpp"
 #include "gateway/core/words.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 std::string ManualPlan::why_refused() const {
   const auto result = static_cast<std::uint32_t>(view_->result);
@@ -64,4 +64,4 @@ std::string ManualPlan::doing() const {
                                                        : "jogs in reverse";
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -8,7 +8,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 class StandWatch {
  public:
@@ -26,4 +26,4 @@ class StandWatch {
   Instant turned_at_ = kLongAgo;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

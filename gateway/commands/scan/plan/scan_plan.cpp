@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <charconv>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
-constexpr bus::ObjectAddress kDeviceType{0x1000, 0};
-constexpr bus::ObjectAddress kDeviceName{0x1008, 0};
+constexpr ObjectAddress kDeviceType{0x1000, 0};
+constexpr ObjectAddress kDeviceName{0x1008, 0};
 constexpr std::uint16_t kIdentity = 0x1018;
 constexpr std::size_t kMaxName = 64;
 constexpr std::uint8_t kWidestField = 4;
 
-const drive::Place* place_of(const drive::Object& object) {
+const profile::Place* place_of(const profile::Object& object) {
   const auto at = object.places.find("canopen");
   return at == object.places.end() || !object.readable ? nullptr : &at->second;
 }
@@ -58,12 +58,12 @@ bool better_fit(const ScanFit& a, const ScanFit& b) {
   return a.has * b.of != b.has * a.of ? a.has * b.of > b.has * a.of : a.has > b.has;
 }
 
-ScanPlan::ScanPlan(const std::vector<drive::Profile>& profiles, ScanRange range) : range_(range) {
-  for (const drive::Profile& profile : profiles) {
+ScanPlan::ScanPlan(const std::vector<profile::Profile>& profiles, ScanRange range) : range_(range) {
+  for (const profile::Profile& profile : profiles) {
     if (!profile.protocols.contains("canopen")) continue;
     profiles_.push_back(profile);
-    for (const drive::Object& object : profile.objects) {
-      const drive::Place* place = place_of(object);
+    for (const profile::Object& object : profile.objects) {
+      const profile::Place* place = place_of(object);
       const auto known = [&](const Tried& tried) { return tried.address == place->address; };
       if (place == nullptr || tried_.size() >= kMaxTried || std::any_of(tried_.begin(), tried_.end(), known)) continue;
       tried_.push_back({place->address, {}});
@@ -185,10 +185,10 @@ bool ScanPlan::tells_widths() const {
 std::vector<ScanFit> ScanPlan::fits() const {
   const bool told = tells_widths();
   std::vector<ScanFit> out;
-  for (const drive::Profile& profile : profiles_) {
+  for (const profile::Profile& profile : profiles_) {
     ScanFit fit{profile.name, 0, 0};
-    for (const drive::Object& object : profile.objects) {
-      const drive::Place* place = place_of(object);
+    for (const profile::Object& object : profile.objects) {
+      const profile::Place* place = place_of(object);
       if (place == nullptr) continue;
       const auto same = [&](const Tried& tried) { return tried.address == place->address; };
       const auto tried = std::find_if(tried_.begin(), tried_.end(), same);
@@ -212,4 +212,4 @@ std::vector<FoundNode> ScanPlan::found() const {
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -15,7 +15,7 @@
 #include "adapters/bus/exchange.hpp"
 #include "gateway/profile/read/profile.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// Of a profile's readable objects on canopen, how many the drive has as the profile says.
 struct ScanFit {
@@ -57,7 +57,7 @@ class ScanPlan {
   static constexpr std::size_t kMaxNameParts = 64;  ///< exchanges for one device name
 
   /// Profiles without canopen are left out; none of the others may have faults.
-  explicit ScanPlan(const std::vector<drive::Profile>& profiles, ScanRange range = {});
+  explicit ScanPlan(const std::vector<profile::Profile>& profiles, ScanRange range = {});
 
   /// A node that was heard is asked before all that were not.
   void heard(const bus::UnsolicitedEvent& unsolicited);
@@ -75,7 +75,7 @@ class ScanPlan {
  private:
   enum class Step : std::uint8_t { knock, identity, name, name_part, objects, over };
   struct Tried {
-    bus::ObjectAddress address;
+    ObjectAddress address;
     std::optional<std::uint8_t> size;  ///< as the node answered
   };
   void knock_on_next();
@@ -85,7 +85,7 @@ class ScanPlan {
   [[nodiscard]] bool tells_widths() const;
   [[nodiscard]] std::vector<ScanFit> fits() const;
 
-  std::vector<drive::Profile> profiles_;
+  std::vector<profile::Profile> profiles_;
   ScanRange range_;
   std::vector<Tried> tried_;
   std::vector<FoundNode> found_;
@@ -98,4 +98,4 @@ class ScanPlan {
   int asked_ = 0;
 };
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

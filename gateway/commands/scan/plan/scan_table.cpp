@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 constexpr std::size_t kColumns = 8;
@@ -91,4 +91,4 @@ std::string scan_table(const std::vector<FoundNode>& nodes) {
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

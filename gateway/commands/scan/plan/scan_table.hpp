@@ -9,9 +9,9 @@
 
 #include "gateway/commands/scan/plan/scan_plan.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// Lines, each with its end; empty where nobody was found.
 [[nodiscard]] std::string scan_table(const std::vector<FoundNode>& nodes);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

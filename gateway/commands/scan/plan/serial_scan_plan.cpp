@@ -12,19 +12,19 @@
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/core/rtu_crc.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 namespace {
 
 /// Kinco's protocol: the end of such a read and the head of any that follows are, to a drive that counts from its
 /// second byte on, a write to another station. No read could be sent behind it.
-bool closes_the_line(const bus::ObjectAddress& address, const std::string& protocol) {
+bool closes_the_line(const ObjectAddress& address, const std::string& protocol) {
   const auto command = static_cast<kinco::Command>(address.index >> 8);
-  return protocol == adapter::kKincoSerial && kinco::is_request(command) && command != kinco::Command::read;
+  return protocol == config::adapter::kKincoSerial && kinco::is_request(command) && command != kinco::Command::read;
 }
 
 /// Where a profile's object is read on this protocol; null: it is not, or a read of it is not documented to be
 /// harmless.
-const drive::Place* read_place(const drive::Object& object, const std::string& protocol) {
+const profile::Place* read_place(const profile::Object& object, const std::string& protocol) {
   const auto at = object.places.find(protocol);
   const bool harmless = object.readable && !object.trigger;
   return at == object.places.end() || !harmless || closes_the_line(at->second.address, protocol) ? nullptr
@@ -33,7 +33,7 @@ const drive::Place* read_place(const drive::Object& object, const std::string& p
 
 /// As they leave on the line.
 std::vector<Byte> bytes_of(const std::string& protocol, const bus::Exchange& exchange) {
-  if (protocol == adapter::kKincoSerial) {
+  if (protocol == config::adapter::kKincoSerial) {
     const kinco::FrameBytes frame = kinco::encode(kinco::request_of(exchange));
     return {frame.begin(), frame.end()};
   }
@@ -46,24 +46,24 @@ std::vector<Byte> bytes_of(const std::string& protocol, const bus::Exchange& exc
 }
 
 template <typename List>
-bool has_address(const List& list, const bus::ObjectAddress& address) {
+bool has_address(const List& list, const ObjectAddress& address) {
   return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.address == address; });
 }
 
 }  // namespace
 
 SerialScanPlan::Protocol SerialScanPlan::protocol_of(const std::string& name,
-                                                     const std::vector<drive::Profile>& profiles,
+                                                     const std::vector<profile::Profile>& profiles,
                                                      const ScanRange& stations) {
   Protocol out;
   out.name = name;
-  const std::uint8_t last = name == adapter::kKincoSerial ? kLastKincoStation : kLastRtuStation;
+  const std::uint8_t last = name == config::adapter::kKincoSerial ? kLastKincoStation : kLastRtuStation;
   out.last_station = std::min(last, stations.last);
-  for (const drive::Profile& profile : profiles) {
+  for (const profile::Profile& profile : profiles) {
     if (!profile.protocols.contains(name)) continue;
     out.profiles.push_back(profile);
-    for (const drive::Object& object : profile.objects) {
-      const drive::Place* place = read_place(object, name);
+    for (const profile::Object& object : profile.objects) {
+      const profile::Place* place = read_place(object, name);
       if (place != nullptr && out.objects.size() < kMostTried && !has_address(out.objects, place->address))
         out.objects.push_back({place->address, object.type_at(*place).size, false});
     }
@@ -73,36 +73,35 @@ SerialScanPlan::Protocol SerialScanPlan::protocol_of(const std::string& name,
 }
 
 /// As few objects as there can be of which every profile has one: each next one is what most of the others have.
-std::vector<bus::ObjectAddress> SerialScanPlan::knocks_for(const std::vector<drive::Profile>& profiles,
-                                                           const std::vector<Tried>& objects,
-                                                           const std::string& protocol) {
-  std::vector<bus::ObjectAddress> out;
-  std::vector<const drive::Profile*> left;
-  for (const drive::Profile& profile : profiles) left.push_back(&profile);
-  const auto has = [&](const drive::Profile& profile, const bus::ObjectAddress& address) {
-    return std::any_of(profile.objects.begin(), profile.objects.end(), [&](const drive::Object& object) {
-      const drive::Place* place = read_place(object, protocol);
+std::vector<ObjectAddress> SerialScanPlan::knocks_for(const std::vector<profile::Profile>& profiles,
+                                                      const std::vector<Tried>& objects, const std::string& protocol) {
+  std::vector<ObjectAddress> out;
+  std::vector<const profile::Profile*> left;
+  for (const profile::Profile& profile : profiles) left.push_back(&profile);
+  const auto has = [&](const profile::Profile& profile, const ObjectAddress& address) {
+    return std::any_of(profile.objects.begin(), profile.objects.end(), [&](const profile::Object& object) {
+      const profile::Place* place = read_place(object, protocol);
       return place != nullptr && place->address == address;
     });
   };
   while (!left.empty()) {
     std::ptrdiff_t most = 0;
-    bus::ObjectAddress best;
+    ObjectAddress best;
     for (const Tried& object : objects) {
       const auto count = std::count_if(left.begin(), left.end(),
-                                       [&](const drive::Profile* profile) { return has(*profile, object.address); });
+                                       [&](const profile::Profile* profile) { return has(*profile, object.address); });
       if (count <= most) continue;
       most = count;
       best = object.address;
     }
     if (most == 0) break;
     out.push_back(best);
-    std::erase_if(left, [&](const drive::Profile* profile) { return has(*profile, best); });
+    std::erase_if(left, [&](const profile::Profile* profile) { return has(*profile, best); });
   }
   return out;
 }
 
-SerialScanPlan::SerialScanPlan(const std::vector<drive::Profile>& profiles, const SerialScanSettings& settings)
+SerialScanPlan::SerialScanPlan(const std::vector<profile::Profile>& profiles, const SerialScanSettings& settings)
     : bauds_(settings.bauds), stations_(settings.stations) {
   for (const std::string& name : settings.protocols) {
     Protocol protocol = protocol_of(name, profiles, stations_);
@@ -222,10 +221,10 @@ void SerialScanPlan::next_speech() {
 
 std::vector<ScanFit> SerialScanPlan::fits() const {
   std::vector<ScanFit> out;
-  for (const drive::Profile& profile : protocol().profiles) {
+  for (const profile::Profile& profile : protocol().profiles) {
     ScanFit fit{profile.name, 0, 0};
-    for (const drive::Object& object : profile.objects) {
-      const drive::Place* place = read_place(object, protocol().name);
+    for (const profile::Object& object : profile.objects) {
+      const profile::Place* place = read_place(object, protocol().name);
       if (place == nullptr) continue;
       const auto tried =
           std::find_if(tried_.begin(), tried_.end(), [&](const Tried& one) { return one.address == place->address; });
@@ -279,4 +278,4 @@ std::string serial_scan_table(const std::vector<FoundStation>& found, const std:
   return out;
 }
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

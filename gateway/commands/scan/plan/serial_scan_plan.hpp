@@ -16,7 +16,7 @@
 #include "gateway/core/clock.hpp"
 #include "gateway/profile/read/profile.hpp"
 
-namespace axisgate::app {
+namespace axisgate::commands {
 
 /// Stations that each protocol has at all: Kinco's tool reaches every drive by 127; RTU's 248 to 255 are reserved.
 inline constexpr std::uint8_t kLastKincoStation = 126;
@@ -47,7 +47,7 @@ class SerialScanPlan {
   static constexpr int kSilences = 3;             ///< in a row: the station is left
   static constexpr std::size_t kMostTried = 512;  ///< objects tried of one station
 
-  SerialScanPlan(const std::vector<drive::Profile>& profiles, const SerialScanSettings& settings);
+  SerialScanPlan(const std::vector<profile::Profile>& profiles, const SerialScanSettings& settings);
 
   /// What must be spoken for next(); none: the scan is over.
   [[nodiscard]] std::optional<SerialSpeech> speech() const;
@@ -64,22 +64,22 @@ class SerialScanPlan {
 
  private:
   struct Tried {
-    bus::ObjectAddress address;
+    ObjectAddress address;
     std::uint8_t size = 0;
     bool has = false;
   };
   struct Protocol {
     std::string name;
-    std::vector<drive::Profile> profiles;
-    std::vector<Tried> objects;              ///< of all its profiles, each once
-    std::vector<bus::ObjectAddress> knocks;  ///< one that each profile has; the shared ones once
+    std::vector<profile::Profile> profiles;
+    std::vector<Tried> objects;         ///< of all its profiles, each once
+    std::vector<ObjectAddress> knocks;  ///< one that each profile has; the shared ones once
     std::uint8_t last_station = 0;
   };
-  [[nodiscard]] static Protocol protocol_of(const std::string& name, const std::vector<drive::Profile>& profiles,
+  [[nodiscard]] static Protocol protocol_of(const std::string& name, const std::vector<profile::Profile>& profiles,
                                             const ScanRange& stations);
-  [[nodiscard]] static std::vector<bus::ObjectAddress> knocks_for(const std::vector<drive::Profile>& profiles,
-                                                                  const std::vector<Tried>& objects,
-                                                                  const std::string& protocol);
+  [[nodiscard]] static std::vector<ObjectAddress> knocks_for(const std::vector<profile::Profile>& profiles,
+                                                             const std::vector<Tried>& objects,
+                                                             const std::string& protocol);
   [[nodiscard]] const Protocol& protocol() const { return protocols_[protocol_]; }
   /// The read of this step, such that a Kinco drive on the line takes it for none of its writes: its frames have no
   /// beginning, and whatever ten bytes have the right sum are one. Steps for which there is no such read are left out.
@@ -114,4 +114,4 @@ class SerialScanPlan {
 /// A table of what answered, and what a configuration of it begins with; empty where nobody did.
 [[nodiscard]] std::string serial_scan_table(const std::vector<FoundStation>& found, const std::string& device);
 
-}  // namespace axisgate::app
+}  // namespace axisgate::commands

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/image/commands_page.hpp"
+#include "gateway/listing/commands_page.hpp"
 
 #include <array>
 #include <map>
@@ -8,7 +8,7 @@
 #include "gateway/core/words.hpp"
 #include "gateway/image/command.hpp"
 
-namespace axisgate {
+namespace axisgate::listing {
 namespace {
 
 using enum MotorDoes;
@@ -289,4 +289,4 @@ nobody, with speeds and ramps that are set.
   return out;
 }
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

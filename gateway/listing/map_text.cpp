@@ -3,9 +3,9 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "gateway/image/listing/map_listing.hpp"
+#include "gateway/listing/map_listing.hpp"
 
-namespace axisgate {
+namespace axisgate::listing {
 namespace {
 
 constexpr std::array<std::string_view, 10> kColumns{"table", "address", "count", "axis",   "bus",
@@ -141,4 +141,4 @@ std::string map_text(const ListedMap& map, MapFormat format) {
   return {};
 }
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/image/listing/map_page.hpp"
+#include "gateway/listing/map_page.hpp"
 
-#include "gateway/image/commands_page.hpp"
 #include "gateway/image/register_map.hpp"
+#include "gateway/listing/commands_page.hpp"
 
-namespace axisgate {
+namespace axisgate::listing {
 namespace {
 
 using namespace std::string_literals;
@@ -120,4 +120,4 @@ Buses count from 0 in the order of the configuration.
          commands_page();
 }
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

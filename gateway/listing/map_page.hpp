@@ -6,8 +6,8 @@
 
 #include <string>
 
-namespace axisgate {
+namespace axisgate::listing {
 
 [[nodiscard]] std::string register_map_page();
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

@@ -13,7 +13,7 @@
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/register_map.hpp"
 
-namespace axisgate {
+namespace axisgate::listing {
 
 struct ListedAxis : Capabilities {
   AxisNumber number = 0;
@@ -58,4 +58,4 @@ enum class MapFormat : std::uint8_t { json, csv, markdown, table, structured_tex
 /// "1/10000 rev" for units_per_rev 10000, "37/60000 rev" for 60000/37.
 [[nodiscard]] std::string position_unit(std::int64_t numerator, std::int64_t denominator);
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/image/listing/map_listing.hpp"
+#include "gateway/listing/map_listing.hpp"
 
 #include "gateway/image/float_rows.hpp"
 
-namespace axisgate {
+namespace axisgate::listing {
 namespace {
 
 using namespace std::string_literals;
@@ -82,4 +82,4 @@ std::string position_unit(std::int64_t numerator, std::int64_t denominator) {
   return std::to_string(denominator) + "/" + std::to_string(numerator) + " rev";
 }
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

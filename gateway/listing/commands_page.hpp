@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace axisgate {
+namespace axisgate::listing {
 
 /// What the motor does when the answer is there, and until the next cycle.
 enum class MotorDoes : std::uint8_t {
@@ -49,4 +49,4 @@ struct CycleTable {
 
 [[nodiscard]] std::string commands_page();
 
-}  // namespace axisgate
+}  // namespace axisgate::listing

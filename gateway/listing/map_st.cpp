@@ -2,9 +2,9 @@
 // The listing as a PLC's source: IEC 61131-3 structured text, constants of all addresses and declarations at %M.
 #include <cctype>
 
-#include "gateway/image/listing/map_listing.hpp"
+#include "gateway/listing/map_listing.hpp"
 
-namespace axisgate {
+namespace axisgate::listing {
 namespace {
 
 /// "axis1_position_actual", "bus0_link", "gateway_uptime_s": letters, digits and single underlines (IEC
@@ -74,4 +74,4 @@ std::string map_st(const ListedMap& map, const std::vector<MapEntry>& entries) {
   return out + "END_VAR\n";
 }
 
-}  // namespace axisgate
+}  // namespace axisgate::listing
