@@ -282,6 +282,8 @@ constexpr auto kWords = std::to_array<Word>({
      "axisgate explain with the code: the text of each drive"},
     {error_code, 0xFF00, "maker's own", "the maker's own code: see vendor_error", "",
      "axisgate explain with the code: the text of each drive"},
+    {error_code, 0xFFFF, "not known yet", "the drive has a fault, and its cause is being read: half a second at most",
+     "", "look again"},
 });
 
 }  // namespace

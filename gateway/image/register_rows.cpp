@@ -86,9 +86,13 @@ std::vector<RegisterRow> axis_register_rows() {
       of(6, torque_actual),
       of(7, current_actual),
       of(8, following_error),
-      of(10, error_code, "CiA 402 603Fh code of the first active row of the profile's alarm table, 0 none"),
+      of(10, error_code,
+         "CiA 402 603Fh code of the first active row of the profile's alarm table, 0 none; 65535 and not valid: a "
+         "fault "
+         "whose cause is being read, 500 ms at most; 0x1000: it has named none"),
       of(11, digital_inputs, "bit 0 negative limit, 1 positive limit, 2 home, 3 interlock or E-stop, 4..15 DI1..DI12"),
-      of(12, vendor_error, "the drive's first fault word in bits 0..15, its second in 16..31"),
+      of(12, vendor_error,
+         "the drive's first fault word in bits 0..15, its second in 16..31; of a fault not valid until they were read"),
       of(14, digital_outputs, "bit 0 brake released, 4..15 DO1..DO12"),
       of(15, drive_temperature),
       of(16, motor_temperature),

@@ -17,7 +17,7 @@ LARGER = {
     "axisgate::drive::AxisCore": (28, 20),
     "axisgate::drive::BringUp": (30, 23),
     "axisgate::drive::CommandSequence": (47, 19),
-    "axisgate::drive::Drive": (83, 15),
+    "axisgate::drive::Drive": (82, 15),
     "axisgate::drive::Motion": (48, 26),
     "axisgate::modbus_rtu::RtuWire": (24, 19),
 }

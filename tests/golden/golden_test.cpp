@@ -100,6 +100,16 @@ TEST(Golden, ACableThatIsPulledAndPluggedBack) {
   compare(story, "kinco-jd.cable");
 }
 
+TEST(Golden, AFaultOfAServoIsShownAtOnceAndItsCauseNext) {
+  Recorder story(KincoType::jd, false);
+  constexpr std::uint16_t kSupplyTooHigh = 0x0020;
+  story.say("the bus voltage is too high");
+  story.stage().drive(0).inject_fault(1, kSupplyTooHigh);
+  story.run(150ms);
+  story.read(0, 25);
+  compare(story, "kinco-jd.fault");
+}
+
 simulated::RtuDriveOptions jd_on_rs485() { return simulated::KincoRtuDrive{}; }
 
 TEST(Golden, AStepperHasAFaultAndIsReset) {

@@ -95,7 +95,8 @@ class Late(Watched):
 
     def test_a_fault_is_told_with_its_code_and_who_comes_late_hears_of_it_and_of_the_last_state_of_every_axis(self):
         self.sim.ask("fault serial/1 2601 0x0100")
-        code = self.watched(1).until(axis_state=ERROR_STOP)["error_code"]
+        code = 0x7110
+        self.watched(1).until(axis_state=ERROR_STOP, error_code=code)
         for reader in self.each_reader():
             self.assertTrue(reader.sample("axis_event", axis=1, kind=FAULT, code=code)["text"])
         for vendor in self.each_vendor():

@@ -150,7 +150,7 @@ class NodeRed(OfTheFlow):
         flow.press("enable")
         flow.until("stop_latched", lambda shown: not shown)
         self.sim.ask("fault lift/1 2601 0x0020")
-        flow.until("error_code", bool)
+        flow.until("error_code", lambda shown: shown == 0x3210)
         self.sim.ask("clear lift/1 2601 0x0020")
         flow.press("fault reset")
         flow.until("error_code", lambda shown: shown == 0)

@@ -38,6 +38,7 @@ class Trip(PlcStory):
             self.until("it is told", lambda station=station: not station.MoveVelocity.Busy)
             self.assertEqual((station.MoveVelocity.Error, station.MoveVelocity.ErrorID), (True, 0x206))
             self.until("its cause, too", lambda station=station: station.ReadStatus.ErrorStop and station.ReadError.AxisErrorID)
+            self.assertNotEqual(station.ReadError.AxisErrorID, 0xFFFF, "what is not known yet is no cause")
             self.assertEqual((station.Power.Status, station.Power.Error, station.Power.ErrorID), (False, True, 0x208))
             self.until_motor_stands(number)
             self.assertEqual(plc.end(number, "MoveVelocity"), "Error")

@@ -76,15 +76,18 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
     return "position " + std::to_string(shown.position()) + " is shown as valid" + old + "and the motor was elsewhere";
   if (bit_of(valid, kBitOfVelocity) && !velocity_fits(shown.velocity(), age_ms, history))
     return "velocity " + std::to_string(shown.velocity()) + " is shown as valid" + old + "and the motor did otherwise";
-  // 3.1: error_code is that of the first active row; 3.2 Causes of faults: "fault bit, error_code ... appear in one
-  // step".
+  // 3.1: error_code is that of the first active row; of a fault whose cause is not known yet it "reads 65535, not
+  // valid", 500 ms at the latest.
   const std::uint16_t code = shown.words[kErrorCode];
   const auto faulted = [](const Sight& sight) { return sight.faulted; };
   if (in_sight && bit_of(valid, kBitOfErrorCode) && code != 0 && !history.was(age_ms + kCauseMs, faulted))
     return "error_code " + std::to_string(code) + " is shown as valid" + old + "of a drive without a fault";
   if (!bit_of(valid, kBitOfStatusword) || !shown.statusword_tells) return {};
-  constexpr std::uint16_t kFault = 0x08;
-  if ((shown.words[obey::shown::statusword] & kFault) != 0 && code == 0) return "a fault is shown without a cause";
+  constexpr std::uint16_t kFault = 0x08, kNotKnown = 0xFFFF;
+  if ((shown.words[obey::shown::statusword] & kFault) != 0) {
+    if (code == 0) return "a fault is shown without a cause";
+    if (code == kNotKnown && bit_of(valid, kBitOfErrorCode)) return "a cause that is not known is shown as valid";
+  }
   constexpr std::uint16_t kStateBits = 0x6F, kOperationEnabled = 0x27;
   const bool enabled = (shown.words[obey::shown::statusword] & kStateBits) == kOperationEnabled;
   if (history.was_enabled(enabled, age_ms)) return {};

@@ -84,6 +84,48 @@ class InVelocity(unittest.TestCase):
         self.assertEqual([self.shown(-25.0, velocity) for velocity in (-25.0, 25.0)], [True, False])
 
 
+class ReadError(unittest.TestCase):
+    """A fault is told before its cause: register 10 reads 65535 then, and bit 7 of `valid` is 0."""
+
+    KNOWN, NOT_KNOWN = 0x0080, 0
+
+    def setUp(self):
+        self.machine = Machine(("axisgate.st", TEXT))
+        self.axis, self.cycle, self.block = (self.machine.new(name) for name in ("AXG_AXIS", "AXG_Cycle", "AXG_ReadError"))
+        self.cycle.Axis = self.block.Axis = self.axis
+        self.cycle.Connected = self.block.Enable = True
+        self.axis.In[36] = 1
+
+    def read(self, code, valid, supported=0x0080, low_first=False, after=20):
+        self.machine.now += after
+        self.axis.LowWordFirst = low_first
+        self.axis.In[10], self.axis.In[20 if low_first else 21], self.axis.In[22 if low_first else 23] = code, supported, valid
+        self.cycle.run()
+        self.block.run()
+        return (self.block.Valid, self.block.Busy, self.block.Error, self.block.AxisErrorID)
+
+    def test_it_waits_for_the_cause(self):
+        for low_first in (False, True):
+            self.setUp()
+            self.read(0, self.KNOWN, low_first=low_first)
+            self.assertEqual(self.read(0, self.KNOWN, low_first=low_first), (True, True, False, 0))
+            self.assertEqual(self.read(65535, self.NOT_KNOWN, low_first=low_first), (False, True, False, 0))
+            self.assertEqual(self.read(65535, self.NOT_KNOWN, low_first=low_first, after=500), (False, True, False, 0))
+            self.assertEqual(self.read(0x3210, self.KNOWN, low_first=low_first), (True, True, False, 0x3210))
+
+    def test_it_waits_for_600_ms_at_most_and_each_time_anew(self):
+        self.read(0, self.KNOWN)
+        for _ in range(2):
+            self.read(0x8130, self.NOT_KNOWN)
+            self.assertEqual(self.read(0x8130, self.NOT_KNOWN, after=599), (False, True, False, 0))
+            self.assertEqual(self.read(0x8130, self.NOT_KNOWN, after=1), (True, True, False, 0x8130), "out of sight: the gateway's own code")
+            self.read(0, self.KNOWN)
+
+    def test_it_does_not_wait_where_the_drive_has_no_code(self):
+        self.read(0, self.NOT_KNOWN, supported=0)
+        self.assertEqual(self.read(65535, self.NOT_KNOWN, supported=0), (True, True, False, 65535))
+
+
 class Xml(unittest.TestCase):
     def setUp(self):
         self.shipped = (SOURCE / "deploy/plc/axisgate.xml").read_text(encoding="utf-8")

@@ -3,6 +3,7 @@
 // told at all, and that says so where it cannot.
 #include <gmock/gmock.h>
 
+#include "gateway/drive/state/fault_watch.hpp"
 #include "tests/stage_drive/stepper_rig.hpp"
 
 namespace axisgate::test {
@@ -93,6 +94,7 @@ TEST(Stepper, AnUnknownFaultNumberIsAGenericError) {
   rig.online();
   rig.motor().inject_fault(99);
   ASSERT_TRUE(rig.stage.run_until([&] { return rig.axis().has(AxisInput::fault); }, 2s));
+  rig.stage.run(drive::kCauseTime);
   EXPECT_TRUE(reads(rig.axis(), Quantity::error_code, 0x1000));
   EXPECT_TRUE(reads(rig.axis(), Quantity::vendor_error, 99));
 }

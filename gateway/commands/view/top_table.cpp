@@ -83,7 +83,8 @@ std::string mode_text(const AxisCells& cells) {
 /// value.
 std::string error_text(const AxisCells& cells) {
   const std::uint16_t code = cells.word(Quantity::error_code);
-  if (code == no_value(RegisterType::u16)) return "?";
+  const bool faulted = cells.word(Source::axis_state) == static_cast<std::uint16_t>(AxisState::error_stop);
+  if (code == no_value(RegisterType::u16)) return faulted ? std::string(find_error(code)->name) : "?";
   const std::uint32_t vendor = cells.pair(Quantity::vendor_error);
   const bool has_vendor = cells.good(Quantity::vendor_error) && vendor != 0 && vendor != no_value(RegisterType::u32);
   const Word* word = find_error(code);

@@ -43,7 +43,7 @@ class Axis {
   void on_bring_up();
   /// The drive has sent an emergency code; 0: the reported emergency is over.
   void on_emergency(std::uint16_t code) { core_.fault.emergency(code, core_.turn.now, core_.store.exchange()); }
-  /// What is to be read next so that a fault can be shown with its cause; and it goes on the wire.
+  /// What is to be read next so that a fault has its cause; and it goes on the wire.
   [[nodiscard]] std::optional<model::ObjectId> cause_to_read() const { return core_.fault.next(core_.turn.now); }
   void cause_asked() { core_.fault.asked(core_.turn.now); }
   /// What came by itself shows the end of the motion, and a read must settle it.
@@ -112,7 +112,7 @@ class Axis {
   /// Brings the image up to date; then calls what is due to be called.
   void publish();
   void call_back();
-  [[nodiscard]] bool has_due() const { return !due_.empty() && !core_.fault.withheld(); }
+  [[nodiscard]] bool has_due() const { return !due_.empty(); }
 
   [[nodiscard]] const AxisCore& core() const { return core_; }
   [[nodiscard]] Duration cycle() const { return shown_.cycle(); }

@@ -27,7 +27,7 @@ void Axis::on_scale() {
 
 void Axis::observe() {
   const AxisFacts facts = core_.facts();
-  shown_.watch_fault();
+  core_.watch_fault();
   core_.motion.observe(facts, core_.model.homing_timeout);
   observe_counter();
   observe_reference(facts);

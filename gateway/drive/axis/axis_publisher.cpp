@@ -25,7 +25,7 @@ void AxisPublisher::measure_cycle() {
 
 void AxisPublisher::publish(const Jog& jog) {
   measure_cycle();
-  watch_fault();
+  core_.watch_fault();
   core_.motion.observe(core_.facts(), core_.model.homing_timeout);
   tell_endings();
   AxisImage before = image_;
@@ -34,16 +34,15 @@ void AxisPublisher::publish(const Jog& jog) {
   show_state(core_, image_);
   if (jog.active())
     image_.level_coils = static_cast<std::uint16_t>(image_.level_coils | (1U << jog_coil(jog.direction())));
-  if (shows_the_same(before, image_)) return;
-  ++image_.sequence;
-  if (image_.board != nullptr) image_.board->mark(image_.number);
-  tell_changes(before);
-}
-
-void AxisPublisher::watch_fault() {
-  core_.watch_fault();
-  if (core_.fault.take_missed())
-    host_.event(image_.number, EventKind::fault, 0, "a fault came and was gone before its cause could be read");
+  const bool changed = !shows_the_same(before, image_);
+  if (changed) {
+    ++image_.sequence;
+    if (image_.board != nullptr) image_.board->mark(image_.number);
+    tell_link(before);
+  }
+  if (!image_.reachable()) return;
+  tell_fault(before);
+  if (changed) tell_changes(before);
 }
 
 // What the servers must know of it: what was commanded before is over, and its client must ask anew.
@@ -54,12 +53,13 @@ void AxisPublisher::tell_endings() {
   losses_counted_ = core_.motion.losses();
 }
 
-void AxisPublisher::tell_changes(const AxisImage& before) {
+void AxisPublisher::tell_link(const AxisImage& before) {
   if (before.link_state != image_.link_state)
     host_.event(image_.number, EventKind::link, static_cast<std::uint32_t>(image_.link_state),
                 "link " + std::string(text(before.link_state)) + " -> " + std::string(text(image_.link_state)));
-  if (!image_.reachable()) return;
-  tell_fault(before);
+}
+
+void AxisPublisher::tell_changes(const AxisImage& before) {
   if (image_.has(AxisInput::homed) && !before.has(AxisInput::homed))
     host_.event(image_.number, EventKind::homed, 0, "homed");
   const std::uint32_t raised = image_.alarms & ~before.alarms;
@@ -77,12 +77,14 @@ void AxisPublisher::reset_asked(const std::string& by) {
   if (fault_.since != kLongAgo) fault_.reset_by = by;
 }
 
+// Once its cause is settled, and once more for another one that comes later.
 void AxisPublisher::tell_fault(const AxisImage& before) {
   const bool fault = image_.has(AxisInput::fault);
-  if (fault && !before.has(AxisInput::fault)) {
-    const auto code = static_cast<std::uint32_t>(image_[Quantity::error_code].value);
-    if (fault_.since == kLongAgo) fault_ = {core_.turn.now, code, {}};
-    fault_.code = code;
+  if (fault && fault_.since == kLongAgo) fault_.since = core_.turn.now;
+  if (fault && !before.has(AxisInput::fault)) fault_.logged.reset();
+  const auto code = static_cast<std::uint16_t>(image_[Quantity::error_code].value);
+  if (fault && core_.fault.settled() && fault_.logged != code) {
+    fault_.logged = code;
     host_.event(image_.number, EventKind::fault, code, fault_text(core_));
   }
   if (fault || fault_.since == kLongAgo) return;
@@ -90,8 +92,10 @@ void AxisPublisher::tell_fault(const AxisImage& before) {
   constexpr double kNsPerSecond = 1e9;
   const double seconds = static_cast<double>((core_.turn.now - over.since).count()) / kNsPerSecond;
   const std::string how = over.reset_by.empty() ? "without a reset by a client" : "reset by " + over.reset_by;
-  host_.event(image_.number, EventKind::warning, 0,
-              fmt::format("fault 0x{:04X} is over after {:.1f} s, {}", over.code, seconds, how));
+  const std::string what =
+      over.logged ? fmt::format("fault 0x{:04X}", *over.logged) : "a fault whose cause was not read";
+  host_.event(image_.number, over.logged ? EventKind::warning : EventKind::fault, 0,
+              fmt::format("{} is over after {:.1f} s, {}", what, seconds, how));
 }
 
 }  // namespace axisgate::drive

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an axis shows: its image, brought up to date from the newest samples, and the events of what has changed in it.
-// Promises that the image's sequence steps once for each change that a client could notice, and that what a fault is
-// and how it ended is logged once. Never decides anything about the axis.
+// Promises that the image's sequence steps once for each change that a client could notice, and that each cause of a
+// fault and how the fault ended is logged once. Never decides anything about the axis.
 #pragma once
 
 #include <string>
@@ -18,8 +18,6 @@ class AxisPublisher {
 
   /// What does not change with its samples: what it has, its limits.
   void show_model();
-  /// A fault is seen, and named, before anything else of its sample counts.
-  void watch_fault();
   /// Brings the image up to date.
   void publish(const Jog& jog);
 
@@ -35,6 +33,7 @@ class AxisPublisher {
  private:
   void measure_cycle();
   void tell_endings();
+  void tell_link(const AxisImage& before);
   void tell_changes(const AxisImage& before);
   void tell_fault(const AxisImage& before);
 
@@ -47,9 +46,9 @@ class AxisPublisher {
   std::uint64_t faults_counted_ = 0;
   std::uint64_t losses_counted_ = 0;
   struct Fault {
-    Instant since = kLongAgo;  ///< kLongAgo: there is none
-    std::uint32_t code = 0;
-    std::string reset_by{};  ///< who has asked for a reset of it last; empty: nobody
+    Instant since = kLongAgo;               ///< kLongAgo: there is none
+    std::optional<std::uint16_t> logged{};  ///< its cause, as log and events have it
+    std::string reset_by{};                 ///< who has asked for a reset of it last; empty: nobody
   } fault_;
 };
 

@@ -60,8 +60,6 @@ Instant Axis::next_deadline() const {
                            jog_limit_due(), owed_.next_deadline(core_.turn.now)});
   for (const Pending& p : pending_)
     for (const Waiting& client : p.callbacks) next = std::min(next, deadline_of(p, client));
-  for (const Due& d : due_)
-    for (const Waiting& client : d.callbacks) next = std::min(next, client.answer_by);
   return next;
 }
 
@@ -115,19 +113,9 @@ void Axis::withdraw(const WriteBatch& asked, Command stop, const BatchResult& an
   pending_.push_back(std::move(pending));
 }
 
-// A reply waits for the image to show the statusword that it is about: a fault is shown when its cause is known.
 void Axis::call_back() {
-  std::vector<Due> due;
-  due.swap(due_);
-  const auto waits = [this](const Due& d) {
-    return core_.fault.withheld() && std::none_of(d.callbacks.begin(), d.callbacks.end(),
-                                                  [this](const Waiting& c) { return core_.turn.now >= c.answer_by; });
-  };
-  const auto waiting = std::stable_partition(due.begin(), due.end(), std::not_fn(waits));
-  due_.assign(std::make_move_iterator(waiting), std::make_move_iterator(due.end()));
-  due.erase(waiting, due.end());
-  for (Due& d : due)
-    for (const Waiting& client : d.callbacks) client.tell(d.result);
+  for (Due& due : std::exchange(due_, {}))
+    for (const Waiting& client : due.callbacks) client.tell(due.result);
 }
 
 }  // namespace axisgate::drive

@@ -15,6 +15,16 @@ Instant confirmed_statusword(const AxisCore& core) {
   return status.known ? status.sent_at : kLongAgo;
 }
 
+/// The words of the fault before are no value of this one, and words alone are none before its cause is known.
+bool is_of_unknown_cause(const AxisCore& core, const model::Binding& binding) {
+  if (binding.quantity != Quantity::vendor_error || !core.facts().faulted()) return false;
+  const auto old = [&](model::ObjectId id) {
+    return id != model::kNoObject && !core.store[id].refused && !core.names_cause(id);
+  };
+  return !core.fault.cause_known() || old(binding.object) ||
+         std::ranges::any_of(binding.bits, [&](const model::BitField& field) { return old(field.object); });
+}
+
 // When the quantity was last confirmed: the oldest of its objects. kLongAgo where one of them never was.
 Instant confirmed_at(const AxisCore& core, const model::Binding& binding) {
   Instant oldest = kNever;
@@ -26,8 +36,8 @@ Instant confirmed_at(const AxisCore& core, const model::Binding& binding) {
   };
   const bool of_error = binding.quantity == Quantity::error_code;
   const Instant status = confirmed_statusword(core);
-  // In a fault it is what this fault was named, as long as the statusword shows the fault.
-  if (of_error && core.facts().faulted()) return status;
+  // In a fault it is what this fault was named, or not yet, as long as the statusword shows the fault.
+  if ((of_error && core.facts().faulted()) || is_of_unknown_cause(core, binding)) return status;
   if (of_error)
     for (const model::ObjectId word : core.model.fault_words) look(word);
   look(binding.object);
@@ -65,39 +75,19 @@ Duration stale_after(const AxisCore& core, const model::Binding& binding) {
   return std::max(kStaleAtLeast, 3 * period);
 }
 
-std::int64_t error_code(const AxisCore& core, const AxisFacts& facts) {
-  if (const std::uint16_t named = named_code(core); named != 0) return named;
+/// Of a fault: none until its cause is known (design 3.2 Causes of faults).
+std::optional<std::int64_t> error_code(const AxisCore& core, const AxisFacts& facts) {
+  if (!facts.faulted()) return named_code(core);
+  if (!core.fault.cause_known()) return std::nullopt;
   constexpr std::int64_t kGenericError = 0x1000;  // CiA 402-2 error codes: generic error
   const std::uint16_t cause = core.fault.code();
-  return facts.faulted() ? (cause != 0 ? cause : kGenericError) : 0;
+  return cause != 0 ? cause : kGenericError;
 }
 
 // Where the set-points of several modes lie in one object (Keya: 6081h), it holds that of the mode in force alone.
 bool is_of_another_mode(const AxisCore& core, const AxisFacts& facts, const model::Binding& binding) {
   if (binding.object == model::kNoObject || core.object(binding.object).aliases.empty()) return false;
   return is_target(binding.quantity) && setpoint_of_mode(facts.mode) != binding.quantity;
-}
-
-bool tells_cause(Quantity quantity) { return quantity == Quantity::error_code || quantity == Quantity::vendor_error; }
-
-/// Design 3.2 Causes of faults: what tells of a fault appears in one step. Until then it stays as it was shown.
-bool held_back(const AxisCore& core, const AxisImage& image, Quantity quantity) {
-  if (!image.reachable()) return false;
-  if (core.fault.withheld()) return tells_cause(quantity) || quantity == Quantity::statusword;
-  return core.fault.words_ahead() && tells_cause(quantity);
-}
-
-/// Of what is shown: what is held back is as old as it is.
-Instant as_of(const AxisCore& core, const AxisImage& image, const model::Binding& binding) {
-  return held_back(core, image, binding.quantity) ? image[binding.quantity].at : confirmed_at(core, binding);
-}
-
-/// The words of the fault before are no value of this one.
-bool of_fault_before(const AxisCore& core, const model::Binding& binding) {
-  const auto old = [&](const model::BitField& field) {
-    return !core.store[field.object].refused && !core.names_cause(field.object);
-  };
-  return binding.quantity == Quantity::vendor_error && std::any_of(binding.bits.begin(), binding.bits.end(), old);
 }
 
 std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& facts, const model::Binding& binding) {
@@ -119,7 +109,7 @@ std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& f
       return *value & ~static_cast<std::int64_t>(model::statusword::kTargetReached);
     }
     default:
-      if (is_of_another_mode(core, facts, binding) || of_fault_before(core, binding)) return std::nullopt;
+      if (is_of_another_mode(core, facts, binding) || is_of_unknown_cause(core, binding)) return std::nullopt;
       return core.value(binding.quantity);
   }
 }
@@ -188,14 +178,11 @@ void show_state(const AxisCore& core, AxisImage& image) {
     const std::uint32_t mask = bit(binding.quantity);
     image.supported =
         refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
-    const bool held = held_back(core, image, binding.quantity);
-    const Instant at = as_of(core, image, binding);
+    const Instant at = confirmed_at(core, binding);
     const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
     const Range fits = range_of(row(binding.quantity).type);
-    const bool good = held ? sample.received && sample.valid : value && fits.holds(*value);
-    if (held) {
-      // As it was.
-    } else if (good) {
+    const bool good = value && fits.holds(*value);
+    if (good) {
       sample.value = *value;
       sample.received = true;
       sample.at = at;
@@ -211,7 +198,6 @@ void show_state(const AxisCore& core, AxisImage& image) {
   if (image.oldest_cyclic == kNever) image.oldest_cyclic = kLongAgo;
   image.alarms = alarms_of(core);
   image.loss_stop_ms = core.loss_stop_ms;
-  if (image.reachable() && core.fault.withheld()) return;
   image.axis_state = core.motion.axis_state(facts);
   image.motion_state = core.motion.state();
   image.motion_id = core.motion.id();
@@ -221,11 +207,11 @@ void show_state(const AxisCore& core, AxisImage& image) {
                                                  (core.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
 }
 
-Instant stale_deadline(const AxisCore& core, const AxisImage& image) {
+Instant stale_deadline(const AxisCore& core) {
   Instant next = kNever;
   for (const model::Binding& binding : core.model.bindings) {
     const Duration limit = stale_after(core, binding);
-    const Instant at = as_of(core, image, binding);
+    const Instant at = confirmed_at(core, binding);
     if (limit == Duration::max() || at == kLongAgo || core.turn.now - at > limit) continue;
     next = std::min(next, at + limit + Duration{1});
   }

@@ -16,7 +16,7 @@ void show_model(const model::AxisModel& model, AxisImage& image);
 /// `image.link_state` is set by the caller before.
 void show_state(const AxisCore& core, AxisImage& image);
 /// When show_state() would show something else without a new sample: a value turns stale.
-[[nodiscard]] Instant stale_deadline(const AxisCore& core, const AxisImage& image);
+[[nodiscard]] Instant stale_deadline(const AxisCore& core);
 /// The text of the check behind the alarm, or of the alarm itself.
 [[nodiscard]] std::string alarm_text(const AxisCore& core, AxisAlarm alarm);
 

@@ -321,7 +321,7 @@ void Drive::bring_up_to_date() {
       std::min({duplicated ? presence_.duplicate_until() : kNever, bring_up_.start().deadline(turn_.now), amends});
   for (auto& axis : axes_) {
     axis->publish();
-    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core(), axis->image())});
+    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core())});
     if (axis->has_due()) next = turn_.now;
   }
   schedule_causes();

@@ -103,7 +103,6 @@ class Drive final : public bus::BusDrive, private AxisHost {
   [[nodiscard]] bool has_cause_to_read() const;
   [[nodiscard]] std::optional<bus::Exchange> next_cause();
   [[nodiscard]] std::optional<bus::Exchange> next_of_causes();
-  [[nodiscard]] bool causes_are_open() const;
   void schedule_causes();
   [[nodiscard]] std::optional<bus::Exchange> next_of_end();
   void finish_end();

@@ -20,12 +20,6 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
     return std::nullopt;
   }
   if (!next) {
-    // A drive that was found faulted comes online with the cause of it.
-    if (causes_are_open()) {
-      if (auto cause = next_cause()) return cause;
-      bus_.wait(jobs_.setup, turn_.now + kCausePause);
-      return std::nullopt;
-    }
     end_bring_up();
     return std::nullopt;
   }

@@ -42,11 +42,7 @@ std::optional<bus::Exchange> Drive::next_of_causes() {
   return exchange;
 }
 
-bool Drive::causes_are_open() const {
-  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->core().fault.withheld(); });
-}
-
-// A drive that comes up reads them in its bring-up's own bus job; out of sight nothing is shown of them.
+// Of a drive that is found faulted, as soon as it is up.
 void Drive::schedule_causes() {
   for (auto& axis : axes_)
     if (axis->fault_is_over())

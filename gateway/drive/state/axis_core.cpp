@@ -257,16 +257,11 @@ void AxisCore::watch_fault() {
   FaultWatch::Seen seen{.at = turn.now,
                         .known = status.known,
                         .faulted = status.known && facts().faulted(),
-                        .statusword = to_read(model.statusword),
                         .statusword_exchange = status.exchange,
                         .words = {}};
   for (const model::ObjectId id : causes) {
     const ObjectState& word = store[id];
-    seen.words.push_back({.object = id,
-                          .refused = word.refused,
-                          .tells_state = tells_state(id),
-                          .number = word.number,
-                          .exchange = word.exchange});
+    seen.words.push_back({id, word.refused, tells_state(id), word.exchange});
   }
   fault.observe(seen);
   fault.name(named_code(*this));

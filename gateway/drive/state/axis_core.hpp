@@ -30,7 +30,7 @@ struct AxisCore {
   Motion motion{model.velocity_lag};
   std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
   std::uint16_t loss_stop_ms = kLossNotKnown;   ///< row 98
-  FaultWatch fault{};                           ///< when a fault is shown, and what must be read before
+  FaultWatch fault{};                           ///< what names a fault, and what must be read for it
   CauseObjects causes = cause_objects(model);   ///< what names the cause of one
   std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
   std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet

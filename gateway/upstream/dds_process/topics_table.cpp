@@ -30,6 +30,12 @@ std::string number(const axisgate::AxisState& axis, std::uint32_t bit, double va
   return marked(axis, bit, std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits));
 }
 
+/// Of a fault whose cause is not known yet there is none.
+std::string error_text(const axisgate::AxisState& axis) {
+  constexpr std::uint16_t kNotKnown = 0xFFFF;
+  return axis.error_code() == kNotKnown ? "?" : fmt::format("{:04X}", axis.error_code());
+}
+
 std::string age(const axisgate::Time& stamp, std::int64_t now_ns) {
   if (stamp.sec() == 0 && stamp.nanosec() == 0) return "-";
   const std::int64_t age_ns = now_ns - (stamp.sec() * kSecond + stamp.nanosec());
@@ -72,20 +78,19 @@ std::string topics_table(const AxisSamples& axes, std::int64_t now_ns) {
                     marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
                     marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
                     number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1),
-                    fmt::format("{:04X}", axis.error_code()), fmt::format("{:08X}", axis.alarms()),
-                    age(axis.stamp(), now_ns)));
+                    error_text(axis), fmt::format("{:08X}", axis.alarms()), age(axis.stamp(), now_ns)));
   }
   return text;
 }
 
 std::string topics_line(const axisgate::AxisState& axis) {
   return fmt::format(
-      "{}axis {} {}: {}, {}, statusword {}, mode {}, position {}, velocity {}, torque {}, error {:04X}",
+      "{}axis {} {}: {}, {}, statusword {}, mode {}, position {}, velocity {}, torque {}, error {}",
       axis.gateway().size() == 0 ? "" : axis.gateway().to_string() + " ", axis.axis(), axis.name().to_string(),
       name_of(WordKind::link_state, axis.link_state()), name_of(WordKind::axis_state, axis.axis_state()),
       marked(axis, kStatusword, fmt::format("{:04X}", axis.statusword())),
       marked(axis, kMode, fmt::format("{}", axis.mode())), number(axis, kPosition, axis.position(), 3),
-      number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1), axis.error_code());
+      number(axis, kVelocity, axis.velocity(), 3), number(axis, kTorque, axis.torque(), 1), error_text(axis));
 }
 
 std::string topics_json(const axisgate::AxisState& axis) {

@@ -101,8 +101,9 @@ TEST_F(ByHand, NothingIsWrittenToAnAxisThatIsNotReadyForIt) {
   view_.link = LinkState::offline;
   refused("out of reach (link offline): nothing was sent");
   begin(ManualTask::enable);
-  set(AxisInput::fault), view_.error_code = 0x3130;
-  refused("error_code 0x3130: axisgate explain 0x3130");
+  set(AxisInput::fault), view_.error_code = 0xFFFF, look();
+  EXPECT_FALSE(plan_->over()) << "its cause is not known yet";
+  view_.error_code = 0x3130, refused("error_code 0x3130: axisgate explain 0x3130");
 }
 
 TEST_F(ByHand, EachStepThatIsRefusedSaysWhichAndWhy) {
@@ -236,9 +237,9 @@ TEST_F(ByHand, HoweverAMoveEndsTheAxisIsStoppedBeforeItsTorqueGoes) {
   look();
   stopped_and_given_back(44);
   moving();
-  set(AxisInput::fault);
-  look();
-  stopped_and_given_back(44);
+  set(AxisInput::fault), view_.error_code = 0xFFFF, look();
+  view_.error_code = 0x3130, stopped_and_given_back(44);
+  EXPECT_EQ(plan_->words(), "axis 4 has a fault, error_code 0x3130: axisgate explain 0x3130");
   moving();
   set(AxisInput::stop_latched);
   look();

@@ -156,6 +156,16 @@ TEST(TopTable, NamesAlarmsErrorsAndOwnModes) {
   EXPECT_THAT(line, EndsWith("not_homed, stop_latched, bit 31"));
 }
 
+TEST(TopTable, SaysOfAFaultWhoseCauseIsNotReadThatItIsNotKnown) {
+  AxisReading axis = good_axis(1);
+  axis.registers[10] = 0xFFFF;
+  put32(axis, 12, 0xFFFFFFFF);
+  put32(axis, 22, ~(bit(Quantity::error_code) | bit(Quantity::vendor_error)));
+  EXPECT_THAT(axis_line(axis), HasSubstr("  ?  ")) << "no fault: nothing was read yet";
+  axis.registers[31] = static_cast<std::uint16_t>(AxisState::error_stop);
+  EXPECT_THAT(axis_line(axis), HasSubstr("  not known yet  "));
+}
+
 TEST(TopTable, SaysThatAValueIsOlderThanTheRegisterCanTell) {
   AxisReading axis = good_axis(1);
   axis.registers[19] = 0xFFFF;

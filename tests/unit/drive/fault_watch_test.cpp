@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a fault is shown, and what is read before: the table of FaultWatch, without a drive.
+// What names a fault, and what is read for it: the table of FaultWatch, without a drive.
 #include "gateway/drive/state/fault_watch.hpp"
 
 #include <gtest/gtest.h>
+
+#include <vector>
 
 namespace axisgate::drive {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr model::ObjectId kStatus = 1, kWordOne = 2, kWordTwo = 3;
+constexpr model::ObjectId kWordOne = 2, kWordTwo = 3;
+constexpr std::uint16_t kSent = 0x4210, kRead = 0x3210;
 
 class FaultWatchTest : public testing::Test {
  protected:
@@ -20,17 +23,29 @@ class FaultWatchTest : public testing::Test {
     seen_.statusword_exchange = ++exchange_;
     look(code);
   }
-  void read_words(std::uint16_t code, std::int64_t number) {
-    for (auto& word : seen_.words) {
-      word.exchange = ++exchange_;
-      word.number = word.object == kWordOne ? number : 0;
-    }
+  void read_word(std::size_t word, std::uint16_t code) {
+    seen_.words.at(word).exchange = ++exchange_;
     look(code);
+  }
+  void read_words(std::uint16_t code) {
+    read_word(0, code);
+    read_word(1, code);
   }
   void look(std::uint16_t code = 0) {
     seen_.at = now_;
     watch_.observe(seen_);
     watch_.name(code);
+  }
+  void pass(Duration time, std::uint16_t code = 0) {
+    now_ += time;
+    look(code);
+  }
+  void send(std::uint16_t code) {
+    watch_.emergency(code, now_, exchange_);
+    look();
+  }
+  void refuse_words() {
+    for (auto& word : seen_.words) word.refused = true;
   }
   std::vector<model::ObjectId> reads() {
     std::vector<model::ObjectId> out;
@@ -45,20 +60,21 @@ class FaultWatchTest : public testing::Test {
   FaultWatch watch_;
   Instant now_ = Instant{} + 1h;
   std::uint64_t exchange_ = 10;
-  FaultWatch::Seen seen_{.statusword = kStatus,
-                         .words = {FaultWatch::Word{.object = kWordOne}, FaultWatch::Word{.object = kWordTwo}}};
+  FaultWatch::Seen seen_{.words = {FaultWatch::Word{.object = kWordOne}, FaultWatch::Word{.object = kWordTwo}}};
 };
 
-TEST_F(FaultWatchTest, ReadsEachWordOnceAndShowsTheFaultWithWhatTheyName) {
+TEST_F(FaultWatchTest, ReadsEachWordOnceAndTheyNameTheFaultOnceAllWereRead) {
   see(false);
-  read_words(0, 0);
+  read_words(0);
   EXPECT_EQ(reads(), std::vector<model::ObjectId>{});
   see(true);
-  EXPECT_TRUE(watch_.withheld());
+  EXPECT_FALSE(watch_.cause_known());
   EXPECT_EQ(reads(), (std::vector<model::ObjectId>{kWordOne, kWordTwo}));
-  read_words(0x3210, 0x20);
-  EXPECT_FALSE(watch_.withheld());
-  EXPECT_EQ(watch_.code(), 0x3210);
+  read_word(0, kRead);
+  EXPECT_FALSE(watch_.cause_known()) << "the second may say more";
+  read_word(1, kRead + 1);
+  EXPECT_TRUE(watch_.cause_known() && watch_.settled());
+  EXPECT_EQ(watch_.code(), kRead + 1);
   EXPECT_EQ(reads(), std::vector<model::ObjectId>{});
 }
 
@@ -66,40 +82,77 @@ TEST_F(FaultWatchTest, AskedInVainItAsksAgainAfterAPauseAndGivesUpAfterHalfASeco
   see(true);
   const Instant risen = now_;
   std::size_t asked = 0;
-  for (; watch_.withheld(); now_ += 1ms, look()) asked += reads().size();
+  for (; !watch_.cause_known(); pass(1ms)) asked += reads().size();
   EXPECT_EQ(now_ - risen, kCauseTime);
   EXPECT_EQ(asked, 2 * static_cast<std::size_t>(kCauseTime / kCausePause));
+  EXPECT_TRUE(watch_.settled());
   EXPECT_EQ(watch_.code(), 0);
   EXPECT_EQ(watch_.deadline(), kNever);
 }
 
+TEST_F(FaultWatchTest, ACauseThatComesAfterHalfASecondIsNamedAllTheSame) {
+  see(true);
+  pass(kCauseTime);
+  read_word(0, kRead);
+  EXPECT_EQ(watch_.code(), kRead);
+  see(false);
+  see(true);
+  pass(kCauseTime);
+  send(kSent);
+  EXPECT_EQ(watch_.code(), kSent);
+}
+
+TEST_F(FaultWatchTest, ItSaysWhenItMustBeLookedAtAgain) {
+  see(true);
+  EXPECT_EQ(watch_.deadline(), now_ + kCauseTime);
+  EXPECT_EQ(reads().size(), 2U);
+  EXPECT_EQ(watch_.deadline(), now_ + kCausePause);
+}
+
 TEST_F(FaultWatchTest, WordsReadBeforeTheFaultAreNoCauseOfIt) {
   see(false);
-  read_words(0, 0);
+  read_words(kRead);
   const std::uint64_t before = exchange_;
-  see(true);
+  see(true, kRead);
   EXPECT_FALSE(watch_.counts(false, before));
   EXPECT_TRUE(watch_.counts(false, exchange_ + 1));
   EXPECT_TRUE(watch_.counts(true, before)) << "what the statusword is made from";
+  EXPECT_FALSE(watch_.cause_known());
+}
+
+TEST_F(FaultWatchTest, AnEmergencyNamesTheFaultAtOnceAndItsWordsAreReadAllTheSame) {
+  see(false);
+  send(kSent);
+  see(true);
+  EXPECT_TRUE(watch_.cause_known());
+  EXPECT_EQ(watch_.code(), kSent);
+  EXPECT_FALSE(watch_.settled());
+  EXPECT_EQ(reads(), (std::vector<model::ObjectId>{kWordOne, kWordTwo}));
+  read_words(kRead);
+  EXPECT_TRUE(watch_.settled());
+  EXPECT_EQ(watch_.code(), kRead) << "what it holds says more than what it has sent";
+  send(kSent);
+  EXPECT_EQ(watch_.code(), kRead);
 }
 
 TEST_F(FaultWatchTest, WordsThatAllAreRefusedAreNotAskedAndAnEmergencyIsEnough) {
-  for (auto& word : seen_.words) word.refused = true;
+  refuse_words();
   see(false);
-  watch_.emergency(0x4210, now_, exchange_);
+  send(kSent);
   see(true);
   EXPECT_EQ(reads(), std::vector<model::ObjectId>{});
-  EXPECT_FALSE(watch_.withheld());
-  EXPECT_EQ(watch_.code(), 0x4210);
-  watch_.emergency(0, now_, exchange_);
-  look();
-  EXPECT_EQ(watch_.code(), 0x4210) << "as long as it is faulted that was its cause";
+  EXPECT_TRUE(watch_.settled());
+  EXPECT_EQ(watch_.code(), kSent);
+  send(0);
+  EXPECT_EQ(watch_.code(), kSent) << "as long as it is faulted that was its cause";
+  send(kSent + 1);
+  EXPECT_EQ(watch_.code(), kSent + 1) << "a second one behind the first";
 }
 
 TEST_F(FaultWatchTest, AnEmergencyOfNoFaultIsForgotten) {
-  for (auto& word : seen_.words) word.refused = true;
+  refuse_words();
   see(false);
-  watch_.emergency(0x4210, now_, exchange_);
+  send(kSent);
   now_ += kCauseTime;
   see(false);
   see(true);
@@ -107,39 +160,42 @@ TEST_F(FaultWatchTest, AnEmergencyOfNoFaultIsForgotten) {
 }
 
 TEST_F(FaultWatchTest, AnEmergencyOfOneFaultIsNoCauseOfTheNextHoweverSoonThatComes) {
-  for (auto& word : seen_.words) word.refused = true;
+  refuse_words();
   see(false);
-  watch_.emergency(0x2310, now_, exchange_);
+  send(kSent);
   see(true);
-  ASSERT_EQ(watch_.code(), 0x2310);
+  ASSERT_EQ(watch_.code(), kSent);
   now_ += kCauseTime / 4;
   see(false);
   now_ += kCauseTime / 4;
   see(true);
   EXPECT_EQ(watch_.code(), 0);
-  EXPECT_TRUE(watch_.withheld()) << "it may still say what this one is";
-  watch_.emergency(0x4210, now_, exchange_);
-  look();
-  EXPECT_EQ(watch_.code(), 0x4210);
+  EXPECT_FALSE(watch_.cause_known()) << "it may still say what this one is";
+  send(kRead);
+  EXPECT_EQ(watch_.code(), kRead);
 }
 
-TEST_F(FaultWatchTest, AWordBeforeItsStatuswordWaitsForItAndAWarningIsShownThen) {
-  see(false);
-  read_words(0x5441, 0x400);
-  EXPECT_TRUE(watch_.words_ahead());
-  EXPECT_EQ(reads(), std::vector<model::ObjectId>{kStatus});
-  see(false, 0x5441);
-  EXPECT_FALSE(watch_.words_ahead());
-  read_words(0x5441, 0x400);
-  EXPECT_FALSE(watch_.words_ahead()) << "it is known";
-}
-
-TEST_F(FaultWatchTest, AFaultThatIsOverBeforeItWasNamedIsMissedOnce) {
+TEST_F(FaultWatchTest, WordsOfOneFaultAreNoCauseOfTheNext) {
   see(true);
+  read_words(kRead);
+  ASSERT_EQ(watch_.code(), kRead);
   see(false);
-  EXPECT_TRUE(watch_.take_missed());
-  EXPECT_FALSE(watch_.take_missed());
   EXPECT_TRUE(watch_.take_over());
+  EXPECT_FALSE(watch_.take_over());
+  EXPECT_EQ(watch_.code(), 0);
+  see(true);
+  EXPECT_FALSE(watch_.cause_known());
+  EXPECT_EQ(reads(), (std::vector<model::ObjectId>{kWordOne, kWordTwo}));
+}
+
+TEST_F(FaultWatchTest, ABringUpBeginsAnewButForWhatTheDriveHasSent) {
+  see(true);
+  read_words(kRead);
+  seen_.known = false;
+  send(kSent);
+  EXPECT_FALSE(watch_.cause_known());
+  see(true);
+  EXPECT_EQ(watch_.code(), kSent);
 }
 
 }  // namespace

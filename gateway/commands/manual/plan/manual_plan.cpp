@@ -30,6 +30,12 @@ std::string_view row_text(const ManualWrite& write) {
   }
 }
 
+constexpr auto kNotKnown = std::uint16_t{0xFFFF};  // a fault is shown before its cause
+
+std::string cause_text(std::uint16_t error_code) {
+  return fmt::format("error_code 0x{0:04X}: axisgate explain 0x{0:04X}", error_code);
+}
+
 }  // namespace
 
 std::string_view text(ManualTask task) {
@@ -197,6 +203,10 @@ void ManualPlan::button_answered(ModbusException exception, Instant now) {
 void ManualPlan::on_view(const ManualView& view, std::uint32_t answered, Instant now) {
   if (over()) return;
   view_ = view;
+  // The cause of the fault that has ended it comes while it gives back what it has.
+  const std::size_t unnamed = words_.find(cause_text(kNotKnown));
+  if (unnamed != std::string::npos && view.has(AxisInput::fault))
+    words_.replace(unnamed, cause_text(kNotKnown).size(), cause_text(view.error_code));
   stand_watch_.look(view.turns, now);
   if (view.mine() && view.lease_remaining_ms != 0) lease_ms_ = std::max(lease_ms_.value_or(0), view.lease_remaining_ms);
   const bool steps_wait = std::any_of(waiting_.begin(), waiting_.end(),
@@ -236,11 +246,11 @@ void ManualPlan::first_look(Instant now) {
                   fmt::format("{} is out of reach (link {}): nothing was sent", name,
                               name_of(WordKind::link_state, static_cast<std::uint32_t>(view.link))),
                   now);
+  if (view.has(AxisInput::fault) && view.error_code == kNotKnown) return;  // it is, at the next look or soon after
   if (view.has(AxisInput::fault))
     return finish(1,
-                  fmt::format("{} has a fault, error_code 0x{:04X}: axisgate explain 0x{:04X}; command 5 resets it "
-                              "once its cause is gone",
-                              name, view.error_code, view.error_code),
+                  fmt::format("{} has a fault, {}; command 5 resets it once its cause is gone", name,
+                              cause_text(view.error_code)),
                   now);
   if (view.anothers())
     return finish(1,
@@ -271,10 +281,7 @@ void ManualPlan::watch(Instant now) {
                               name_of(WordKind::link_state, static_cast<std::uint32_t>(view.link))),
                   now);
   if (view.has(AxisInput::fault))
-    return finish(1,
-                  fmt::format("{} has a fault, error_code 0x{:04X}: axisgate explain 0x{:04X}", name, view.error_code,
-                              view.error_code),
-                  now);
+    return finish(1, fmt::format("{} has a fault, {}", name, cause_text(view.error_code)), now);
   if (view.anothers()) {
     torque_is_ours_ = false;  // its new owner decides
     return finish(1, fmt::format("{} was taken over by {}", name, owner_text(view)), now);
