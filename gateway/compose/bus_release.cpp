@@ -115,13 +115,14 @@ std::string BusRelease::why_not(const drive::Drive& drive, const drive::Axis& ax
   if (closed_) return found(drive.closing_outcome());
   if (shows_torque(axis.image())) return kHasTorque;
   const bool in_time = runtime_.now() < looked_by_;
-  return axis.idle() || in_time ? "" : "carries out commands all the time: reload while its clients are quiet";
+  return axis.pending().empty() || in_time ? ""
+                                           : "carries out commands all the time: reload while its clients are quiet";
 }
 
 bool BusRelease::commands_are_under_way() const {
   return std::ranges::any_of(drives_, [](const drive::Drive* drive) {
     for (std::size_t slot = 0; slot < drive->axis_count(); ++slot)
-      if (!drive->axis(static_cast<AxisSlot>(slot)).idle()) return true;
+      if (!drive->axis(static_cast<AxisSlot>(slot)).pending().empty()) return true;
     return false;
   });
 }

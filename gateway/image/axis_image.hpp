@@ -13,9 +13,9 @@
 #include "gateway/core/error.hpp"
 #include "gateway/core/numbers.hpp"
 #include "gateway/core/rational.hpp"
+#include "gateway/image/axis_record.hpp"
 #include "gateway/image/capabilities.hpp"
 #include "gateway/image/changes.hpp"
-#include "gateway/image/endings.hpp"
 #include "gateway/image/lease.hpp"
 #include "gateway/image/quantity.hpp"
 
@@ -127,7 +127,7 @@ struct AxisImage : Capabilities {
   Lease lease{};
   /// A position sampled no later than this counts from another zero: a homing or a set_position was under way since.
   Instant zero_moved = kLongAgo;
-  Endings endings{};                 ///< what has ended motions: the servers' rules of edges look at it
+  AxisRecord record{};               ///< what came after what: the servers' rules of edges look at it
   Instant oldest_cyclic = kLongAgo;  ///< when the oldest cyclic value was confirmed
   LatestResult latest;
   std::uint64_t unheeded_stop = 0;  ///< BatchResult::stop of the newest that was done, and whose motor turned on

@@ -28,8 +28,8 @@ void ProcessImage::remove_axis(AxisNumber number) {
   AxisImage nothing;
   nothing.number = number;
   nothing.sequence = (*place)->sequence + 1;
-  nothing.endings = (*place)->endings;
-  nothing.endings.lost();
+  nothing.record = (*place)->record;
+  nothing.record.lost();
   **place = std::move(nothing);
   removed_.insert_or_assign(number, std::move(*place));
   axes_.erase(place);

@@ -70,7 +70,7 @@ inline constexpr std::size_t kMaxBuses = 100;  ///< 50000 + 100 * b must stay be
 class ProcessImage {
  public:
   /// Numbers are unique and within 1..499 (the configuration was checked).
-  /// One that there was before begins from scratch, but for `sequence` and its endings: to every client its link was
+  /// One that there was before begins from scratch, but for `sequence` and its record: to every client its link was
   /// lost.
   AxisImage& add_axis(AxisNumber number, std::string name, std::uint8_t bus);
   /// It shows nothing any more, and is not found.

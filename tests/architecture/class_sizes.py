@@ -13,12 +13,12 @@ LARGER = {
     "axisgate::commands::ManualPlan": (51, 30),
     "axisgate::bus::Bus": (37, 19),
     "axisgate::can::SocketCanLink": (18, 25),
-    "axisgate::drive::Axis": (128, 27),
+    "axisgate::drive::Axis": (111, 27),
     "axisgate::drive::AxisCore": (28, 20),
     "axisgate::drive::BringUp": (30, 23),
     "axisgate::drive::CommandSequence": (47, 19),
     "axisgate::drive::Drive": (82, 15),
-    "axisgate::drive::Motion": (48, 26),
+    "axisgate::drive::Motion": (45, 25),
     "axisgate::modbus_rtu::RtuWire": (24, 19),
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/stage/gateway_stage.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -167,8 +169,15 @@ std::shared_ptr<std::optional<GatewayStage::Reasons>> GatewayStage::begin_reload
   return place;
 }
 
+void GatewayStage::expect_nothing_held_back() const {
+  if (gateway_ == nullptr) return;
+  for (const auto& axis : gateway_->image().axes())
+    EXPECT_EQ(axis->record.held_back(), 0U) << "axis " << axis->number << "\n" << testing::PrintToString(log_lines_);
+}
+
 void GatewayStage::crash(const std::function<void()>& others) {
   for (std::size_t line = 0; line < links_.size(); ++line) at_link(line, [](auto& link) { link.let_go(); });
+  expect_nothing_held_back();
   gateway().stop();  // a dead process answers no session's end
   others();
   gateway_.reset();

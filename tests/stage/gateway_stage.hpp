@@ -74,6 +74,10 @@ class GatewayStage {
     bool last_first = false;  ///< the configuration names its drives from the last one on
   };
   explicit GatewayStage(std::vector<Line> lines, std::uint64_t seed = 1);
+  /// Whatever a test is about: a write that the way out has to hold back fails it.
+  ~GatewayStage() { expect_nothing_held_back(); }
+  GatewayStage(const GatewayStage&) = delete;
+  GatewayStage& operator=(const GatewayStage&) = delete;
 
   /// Throws while none runs, as axis() and what asks the gateway do.
   [[nodiscard]] compose::Gateway& gateway();
@@ -132,6 +136,7 @@ class GatewayStage {
   std::shared_ptr<std::optional<BatchResult>> begin(AxisNumber axis, WriteBatch batch);
 
  private:
+  void expect_nothing_held_back() const;
   ManualRuntime runtime_;
   std::vector<std::string> log_lines_;
   Log log_;

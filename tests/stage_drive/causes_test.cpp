@@ -47,8 +47,9 @@ class NamedBy : public testing::Test {
   Rig rig_;
   drive::Turn turn_{.now = Instant{} + 1h, .link = LinkState::online};
   drive::ObjectStore store_{model().objects};
-  drive::AxisCore core_{model(), model().axes[0], store_, turn_};
   AxisImage image_;
+  drive::AxisCore core_{model(), model().axes[0], store_, turn_,
+                        drive::Motion{model().axes[0].velocity_lag, image_.record}};
 };
 
 constexpr std::int64_t kEnabledWord = 0x0637, kFaultWord = 0x0618;

@@ -19,6 +19,7 @@ struct Table {
   const model::DriveModel& model;
   drive::ObjectStore store;
   drive::Turn turn{.now = Instant{} + 1h, .link = LinkState::online};
+  AxisRecord record;
   drive::AxisCore core;
   std::map<ObjectAddress, std::uint32_t> held;
   std::vector<bus::Exchange> sent;
@@ -27,7 +28,7 @@ struct Table {
       : rig(type),
         model(rig.stage.gateway().drive_of(1)->model()),
         store(model.objects.size()),
-        core{model, model.axes[0], store, turn} {
+        core{model, model.axes[0], store, turn, drive::Motion{model.axes[0].velocity_lag, record}} {
     held[{0x6041, 0}] = 0x4637;  // enabled, target reached
     held[{0x6040, 0}] = 0x000F;
     held[{0x6060, 0}] = held[{0x6061, 0}] = 1;

@@ -17,19 +17,10 @@ Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, co
     : host_(host),
       image_(image),
       slot_(slot),
-      core_{drive, drive.axes[slot], store, turn},
+      core_{drive, drive.axes[slot], store, turn, Motion{drive.axes[slot].velocity_lag, image.record}},
       shown_(core_, image_, host_),
       ownership_(image.lease, drive.axes[slot].lease) {
   core_.loss_stop_ms = model::loss_stop_ms(drive, std::nullopt);
-}
-
-Axis::Pending* Axis::find(bus::JobId id) {
-  const auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.id == id; });
-  return found == pending_.end() ? nullptr : &*found;
-}
-
-bool Axis::motion_pending() const {
-  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.starts_motion; });
 }
 
 bool Axis::holds(Quantity quantity, std::int64_t value) const {
@@ -120,7 +111,7 @@ bool Axis::join_stop(const WriteBatch& batch, BatchCallback& on_result) {
 
 void Axis::accept_stop(const WriteBatch& batch) {
   core_.motion.stop(stop_latches(core_, batch), core_.turn.now);
-  image_.endings.stopped(batch.client);
+  core_.motion.record().stopped(batch.client);
   for (Pending& p : pending_) {
     if (p.stopped_by) continue;
     p.stopped_by = batch.client;
@@ -154,7 +145,7 @@ void Axis::name_limit(const WriteBatch& batch, BatchResult& result) const {
 
 std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result) {
   auto [batch, code] = as_quantities(core_, asked);
-  if (asks_for_missing_halt(batch)) {
+  if (asks_for_missing_halt(core_, batch)) {
     batch.controlword.reset();
     batch.command = Command::halt;
   }
@@ -182,7 +173,8 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   }
   // Accepted in every state: the latch is set even where nothing can be sent.
   if (stop) accept_stop(batch);
-  pending.stop_number = stop ? core_.motion.stops() : 0;
+  AxisRecord& record = core_.motion.record();
+  pending.accepted = stop ? record.newest_stop() : record.accepted();
   if (const Errc of_link = link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
     if (stop) publish();
     return refuse(asked, of_link);
@@ -213,7 +205,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   pending.by_mailbox = asked.object.has_value();
   pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, stop, asked.object && !batch.object);
   pending.starts_motion = starts_motion(core_, batch);
-  if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.press();
+  if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.pressed();
   pending.start_by = stop ? kNever : batch.start_by;
   pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(batch)});
   std::optional<BatchResult> refused;
@@ -232,7 +224,7 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
     return;
   }
   if (queued.joined) {
-    Pending* shared = find(queued.id);
+    Pending* shared = pending_.find(queued.id);
     if (shared == nullptr || shared->callbacks.size() >= kMaxJoined) {
       refused = refuse(batch, Errc::queue_full);
     } else {
@@ -243,8 +235,6 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
   }
   pending.id = queued.id;
   accept(batch);
-  if (batch.controlword || (batch.command != Command::none && !is_stop(batch.command)))
-    pending.acts_at = image_.endings.accepted();
   const bool drives = std::any_of(batch.setpoints.begin(), batch.setpoints.end(), [](const Setpoint& sp) {
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
@@ -260,13 +250,13 @@ void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refus
 // --- Carrying it out -----------------------------------------------------------------------------------------------
 
 std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
-  Pending* pending = find(id);
+  Pending* pending = pending_.find(id);
   if (pending == nullptr) return std::nullopt;
   if (ends_with_gateway(*pending)) {
     end_begun(*pending);
     return std::nullopt;
   }
-  if (!pending->command_sequence->is_stop() && waits_for_stop(*pending)) {
+  if (!pending->command_sequence->is_stop() && pending_.waits_for_stop(*pending)) {
     host_.job_waits(id, core_.turn.now + kStopsFirst);
     return std::nullopt;
   }
@@ -285,26 +275,13 @@ std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
 }
 
 bool Axis::passes_resync(bus::JobId id) {
-  Pending* pending = find(id);
+  Pending* pending = pending_.find(id);
   if (pending == nullptr) return false;
   return pending->command_sequence->passes_resync();
 }
 
-bool Axis::insists(bus::JobId id) const {
-  return std::any_of(pending_.begin(), pending_.end(), [&](const Pending& p) {
-    return p.command_sequence->is_stop() &&
-           (p.id == id ? p.command_sequence->would_repeat() : !p.command_sequence->begun());
-  });
-}
-
-bus::JobId Axis::chain_job() const {
-  for (const Pending& p : pending_)
-    if (p.command_sequence->chain_open()) return p.id;
-  return 0;
-}
-
 void Axis::on_result(bus::JobId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
-  Pending* pending = find(id);
+  Pending* pending = pending_.find(id);
   if (pending == nullptr) return;
   pending->command_sequence->on_result(result, sent_at, trusted);
   carry_on(*pending);
@@ -337,7 +314,7 @@ void Axis::carry_on(Pending& pending) {
 }
 
 void Axis::on_job_ended(bus::JobId id, Errc code) {
-  Pending* pending = find(id);
+  Pending* pending = pending_.find(id);
   if (pending == nullptr) return;
   CommandSequence& command_sequence = *pending->command_sequence;
   const bool begun = command_sequence.begun();
@@ -360,9 +337,9 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
   note_begun(pending, result.outcome.code == Errc::ok);
   note_stop(pending, true);
   note_jog(pending, result.outcome.code);
-  if (!motion_pending()) core_.motion.unmask_target_reached();
+  if (!pending_.starts_motion()) core_.motion.unmask_target_reached();
   BatchResult told = result;
-  told.stop = pending.stop_number;
+  told.stop = pending.command_sequence->began_as_stop() ? pending.accepted : 0;
   told.refused_row = refused_row(core_, pending.command_sequence->batch(), told.outcome.code);
   if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
     told.outcome = {pending.refusal, 0};

@@ -11,8 +11,8 @@
 
 #include "adapters/bus/exchange.hpp"
 #include "gateway/drive/axis/axis_publisher.hpp"
+#include "gateway/drive/axis/pending_batches.hpp"
 #include "gateway/drive/axis/telling.hpp"
-#include "gateway/drive/command_sequence/command_sequence.hpp"
 #include "gateway/drive/motion/accepted.hpp"
 #include "gateway/drive/motion/late_enable.hpp"
 #include "gateway/drive/motion/owed_stop.hpp"
@@ -72,36 +72,25 @@ class Axis {
   /// It does not end after all.
   void reopen() { closing_ = false; }
   [[nodiscard]] const AxisImage& image() const { return image_; }
-  /// Nothing of it waits for the wire or is on it.
-  [[nodiscard]] bool idle() const { return pending_.empty(); }
+  /// What of it waits for the wire or is on it.
+  [[nodiscard]] const PendingBatches& pending() const { return pending_; }
   /// Bring-up has found the axis enabled: it is open to every operator, until its lease runs out (design 3.5).
   void on_adopted();
   /// Somebody answers for what the axis does: its owner's lease runs, or leases are off. What must be commanded again
   /// and again (profile key "keepalive") is commanded only so long.
   [[nodiscard]] bool commands_live() const { return ownership_.live(core_.turn.now); }
 
-  /// A stop of it waits for the wire or is under way.
-  [[nodiscard]] bool stopping() const;
   /// A stop was accepted, and the drive has not shown it yet.
   [[nodiscard]] bool owes_stop() const { return owed_.owed(); }
-  /// An enable is under way.
-  [[nodiscard]] bool enabling() const { return enable_is_asked(true); }
-  /// The same, or (not `begun`) one waits for the wire.
-  [[nodiscard]] bool enable_is_asked(bool begun = false) const;
-  /// A disable waits for the wire.
-  [[nodiscard]] bool disable_waits() const;
-  [[nodiscard]] bool asks_for_missing_halt(const WriteBatch& batch) const;
 
   /// The bus job's next exchange; none: it waits or has just ended.
   [[nodiscard]] std::optional<bus::Exchange> on_grant(bus::JobId id);
   [[nodiscard]] bool passes_resync(bus::JobId id);
-  /// A stop that has not been sent yet, or, of the bus job on the wire, one that will be sent once more.
-  [[nodiscard]] bool insists(bus::JobId id) const;
   void on_result(bus::JobId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted);
   void on_job_ended(bus::JobId id, Errc code);
-  [[nodiscard]] bool has(bus::JobId id) const { return find(id) != nullptr; }
-  /// The bus job whose long object is under way; 0: none.
-  [[nodiscard]] bus::JobId chain_job() const;
+
+  /// A write to it did not pass the way out; of a stop: a quick stop takes its place.
+  void on_held_back(const std::string& what, bool stop);
 
   /// Deadlines of write batches.
   void on_time();
@@ -118,30 +107,6 @@ class Axis {
   [[nodiscard]] Duration cycle() const { return shown_.cycle(); }
 
  private:
-  /// A client that waits for a result. Those that share a bus job keep a deadline each.
-  struct Waiting {
-    BatchCallback tell;
-    Instant start_by = kNever;   ///< nothing sent by then: never_started; of a stop: kNever
-    Instant answer_by = kNever;  ///< no result by then: timed_out
-  };
-  struct Pending {
-    bus::JobId id = 0;
-    std::unique_ptr<CommandSequence> command_sequence;
-    std::vector<Waiting> callbacks;
-    Instant start_by = kNever;  ///< the latest of theirs: the bus ends the bus job then
-    bool starts_motion = false;
-    bool claims_when_begun = false;  ///< as things stood when it came, nothing of it was accepted
-    bool by_mailbox = false;
-    bool jogs = false;                        ///< it starts a jog
-    std::optional<Endings::Point> acts_at{};  ///< of a command or controlword that the servers do not know to act yet
-    std::uint64_t stop_number = 0;            ///< of a stop: Motion::stops() when it was accepted
-    std::uint64_t ends_jog = 0;               ///< once it has started what it starts, this jog is over
-    Errc refusal = Errc::ok;                  ///< of what stood beside the stop; the answer once the stop is done
-    std::optional<ClientId> stopped_by{};     ///< whose stop came first after it
-    std::string stopped_by_name{};            ///< for log and events
-    /// What the refusal is of.
-    std::optional<std::uint16_t> refused_row{};
-  };
   struct Due {
     BatchResult result;
     std::vector<Waiting> callbacks;
@@ -157,21 +122,18 @@ class Axis {
   [[nodiscard]] bool may_run() const;
   [[nodiscard]] bool may_be_jog() const;
   void accept(const WriteBatch& batch);
-  void note_commanded(Pending& pending);
+  void note_commanded(const Pending& pending);
   void forget_accepted(const WriteBatch& batch);
   [[nodiscard]] std::optional<BatchResult> release(const WriteBatch& batch, BatchCallback on_result);
   [[nodiscard]] BatchResult released(const WriteBatch& batch);
   [[nodiscard]] std::optional<BatchResult> take_over(const WriteBatch& batch, BatchCallback on_result);
   [[nodiscard]] std::optional<BatchResult> taken_over(const WriteBatch& batch, BatchCallback on_result);
-  /// Of anybody: it waits for the wire or has begun, and is neither a stop nor a mere read.
-  [[nodiscard]] bool writes_wait() const;
   void end_expired_lease();
   void on_lease_action(const BatchResult& result);
   [[nodiscard]] Errc begin_jog(WriteBatch& batch);
   [[nodiscard]] Duration usual_position_gap() const;
   /// No value: it is not homed, or nobody knows where it is, so no limit ends the jog.
   [[nodiscard]] std::optional<JogTravel> jog_travel(std::int64_t velocity) const;
-  [[nodiscard]] bool jog_is_starting() const;
   /// When a halt must be sent that ends the jog before the position limit, as far as is known now.
   [[nodiscard]] Instant jog_limit_due() const;
   void watch_position();
@@ -195,14 +157,9 @@ class Axis {
   void send_owed(StopKind stop);
   void note_stop(const Pending& pending, bool ended);
   void note_begun(const Pending& pending, bool done);
-  [[nodiscard]] bool ends_what_is_owed() const;
   void tell_end(OwedStop::End end);
   void note_jog(const Pending& pending, Errc code);
   [[nodiscard]] bool runs_unwatched() const;
-  [[nodiscard]] bool waits_for_stop(const Pending& pending) const;
-  [[nodiscard]] bool is_behind_rest_of_stop(const Pending& pending) const;
-  /// A stop of it waits or is under way, or what stood beside one.
-  [[nodiscard]] bool carries_out_stop() const;
   void hold_rest(const Pending& pending);
   void end_jog();
   void halt_jog(const std::string& why);
@@ -234,11 +191,6 @@ class Axis {
   void tell_refused(const WriteBatch& asked, const BatchResult& result);
   void name_limit(const WriteBatch& batch, BatchResult& result) const;
   void tell_ended(const Pending& pending, const Outcome& outcome);
-  [[nodiscard]] Pending* find(bus::JobId id);
-  [[nodiscard]] const Pending* find(bus::JobId id) const { return const_cast<Axis*>(this)->find(id); }
-  [[nodiscard]] bool motion_pending() const;
-  /// A run waits for the wire or is under way.
-  [[nodiscard]] bool run_is_asked() const;
   void add_zero_speed(WriteBatch& batch) const;
 
   AxisHost& host_;
@@ -246,7 +198,7 @@ class Axis {
   AxisSlot slot_;
   AxisCore core_;
   AxisPublisher shown_;
-  std::vector<Pending> pending_;
+  PendingBatches pending_;
   std::vector<Due> due_;
   bool reference_invalidated_ = false;
   bool holds_method_ = false;              ///< its drive was seen to hold the homing_method that a client has written

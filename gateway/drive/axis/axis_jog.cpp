@@ -30,7 +30,7 @@ Errc Axis::begin_jog(WriteBatch& batch) {
   batch.command = Command::run_velocity;
   batch.jogs = true;
   if (!jog_.active()) core_.velocity_beside_jog = core_.motion.wanted(Quantity::target_velocity).value_or(Wanted{});
-  jog_.start(direction, batch.client, core_.turn.now, core_.model.jog_timeout);
+  jog_.start(direction, batch.client, core_.turn.now, core_.model.jog_timeout, core_.motion.record().accepted());
   return Errc::ok;
 }
 
@@ -59,14 +59,10 @@ std::optional<JogTravel> Axis::jog_travel(std::int64_t velocity) const {
   return travel;
 }
 
-bool Axis::jog_is_starting() const {
-  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) { return p.jogs; });
-}
-
 // A halt waits for what is on the wire: as long as the position was not heard of, at least once. The position counts
 // from when it was sampled, and of an axis that stood until now from its start.
 Instant Axis::jog_limit_due() const {
-  if (!jog_.active() || !core_.reachable() || jog_is_starting()) return kNever;
+  if (!jog_.active() || !core_.reachable() || pending_.jogs()) return kNever;
   const std::int64_t shown = std::llabs(core_.value(Quantity::velocity_actual).value_or(0));
   const auto travel = jog_travel(std::max<std::int64_t>(shown, image_.jog_velocity));
   if (!travel) return kNever;
@@ -77,7 +73,7 @@ void Axis::watch_position() {
   const model::Binding* position = core_.model.binding(Quantity::position_actual);
   if (position == nullptr || position->object == model::kNoObject) return;
   const Instant newest = core_.store[position->object].sent_at;
-  if (!jog_.active() || jog_is_starting()) {
+  if (!jog_.active() || pending_.jogs()) {
     jog_started_ = core_.turn.now;
     position_gap_ = usual_position_gap();
   } else if (newest > position_at_) {
@@ -96,7 +92,7 @@ void Axis::observe_jog() {
     return;
   }
   const bool goes_on = jog_.carried() && core_.facts().enabled();
-  if (!jog_is_starting() && !goes_on && core_.motion.running() != MotionKind::velocity) {
+  if (!pending_.jogs() && !goes_on && core_.motion.running() != MotionKind::velocity) {
     end_jog();  // a fault, a stop, or another command: only a new press jogs again
     jog_ended_without_halt_ = true;
     return;
@@ -113,8 +109,8 @@ void Axis::note_jog(const Pending& pending, Errc code) {
     jog_.carry();
   else if (pending.jogs && code != Errc::ok && !pending.command_sequence->begun() && !core_.reachable())
     end_jog();
-  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.press()) end_jog();
-  const bool no_other_jog = !jog_.active() || pending.ends_jog == jog_.press();
+  if (code == Errc::ok && pending.ends_jog != 0 && pending.ends_jog == jog_.pressed()) end_jog();
+  const bool no_other_jog = !jog_.active() || pending.ends_jog == jog_.pressed();
   if (code != Errc::ok && pending.ends_jog != 0 && !pending.stopped_by && no_other_jog && runs_unwatched())
     stop_jog("jog: another command has taken its mode and failed: halted");
 }

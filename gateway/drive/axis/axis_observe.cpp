@@ -119,7 +119,7 @@ void Axis::observe_homing_method() {
 // go on by itself as soon as its cause is gone.
 void Axis::observe_end_of_fault(const AxisFacts& facts) {
   if (!core_.is_virtual() || !core_.reachable()) return;
-  if (!std::exchange(faulted_, facts.faulted()) || !facts.enabled() || enable_is_asked()) return;
+  if (!std::exchange(faulted_, facts.faulted()) || !facts.enabled() || pending_.enables()) return;
   host_.event(image_.number, EventKind::warning, 0, "enabled by the drive itself when its fault was over: disabled");
   owed_.accepted(StopKind::disable, core_.store.exchange());
 }
@@ -134,13 +134,7 @@ void Axis::on_unseen_restart(const char* sign) {
 // --- The image -----------------------------------------------------------------------------------------------------
 
 // By whatever way a homing was asked for: from when it is asked until it was seen to be over.
-bool Axis::zero_may_move() const {
-  const auto moves_it = [](const Pending& p) {
-    const Command command = p.command_sequence->batch().command;
-    return command == Command::home || command == Command::set_position;
-  };
-  return core_.motion.running() == MotionKind::homing || std::any_of(pending_.begin(), pending_.end(), moves_it);
-}
+bool Axis::zero_may_move() const { return core_.motion.running() == MotionKind::homing || pending_.moves_zero(); }
 
 void Axis::publish() {
   const bool moves = zero_may_move();

@@ -87,7 +87,7 @@ void Axis::observe_owed() {
   owed_.link_back(core_.turn.now);
   const auto state = model::state_of(static_cast<std::uint16_t>(status.number));
   take_back_enable(state);
-  if (!owed_.owed() || carries_out_stop() || ends_what_is_owed()) return;
+  if (!owed_.owed() || pending_.carries_out_stop() || pending_.ends_owed_stop(owed_.halts())) return;
   tell_end(owed_.state_read(state, status.exchange, core_.shows_torque() && core_.facts().moving));
   if (const auto stop = owed_.due(core_.turn.now)) send_owed(*stop);
 }
@@ -102,7 +102,7 @@ void Axis::watch_enable(const CommandSequence& unknown) {
 // for since, is taken away again.
 void Axis::take_back_enable(model::State402 state) {
   if (state != model::State402::operation_enabled || !late_enable_.expected(core_.turn.now)) return;
-  if (enable_is_asked() || owed_.owed() || stopping()) return;
+  if (pending_.enables() || owed_.owed() || pending_.stopping()) return;
   if (late_enable_.of_unknown(core_.turn.now))
     host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(Command::enable),
                 "the enable whose outcome was unknown has happened, and is taken back");
@@ -130,7 +130,7 @@ void Axis::send_owed(StopKind stop) {
   owed_.sending();
   Pending pending;
   pending.by_mailbox = true;  // it shows in no client's result
-  pending.stop_number = core_.motion.stops();
+  pending.accepted = core_.motion.record().newest_stop();
   pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, true);
   bus::BusJob job = job_for(core_, batch, true);
   job.axis = slot_;
@@ -155,8 +155,8 @@ void Axis::note_stop(const Pending& pending, bool ended) {
   if (command_sequence.begun()) owed_.sending();
   const bool confirmed = command_sequence.stop_confirmed();
   const bool goes_back = *kind == StopKind::halt && halts_by_position(core_);
-  if (confirmed && !goes_back && pending.stop_number == core_.motion.stops())
-    stop_watch_.begin({*kind, pending.stop_number});
+  if (confirmed && !goes_back && pending.accepted == core_.motion.record().newest_stop())
+    stop_watch_.begin({*kind, pending.accepted});
   if (ended || confirmed)
     tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
 }
@@ -167,7 +167,7 @@ void Axis::observe_stop() {
   const auto stop = stop_watch_.watched();
   if (!stop) return;
   const Motion& motion = core_.motion;
-  const bool holds = motion.stopping() && motion.stops() == stop->number && !motion.runs_raw();
+  const bool holds = motion.stopping() && core_.motion.record().newest_stop() == stop->at && !motion.runs_raw();
   if (!holds || !core_.shows_torque()) return stop_watch_.end();
   const model::Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
   const auto speed = core_.value(Quantity::velocity_actual);
@@ -177,12 +177,18 @@ void Axis::observe_stop() {
       std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
   if (!stop_watch_.goes_on(std::abs(*speed), core_.store[velocity->object].sent_at, core_.model.velocity_lag + period))
     return;
-  image_.unheeded_stop = stop->number;
-  if (image_.latest.stop == stop->number) image_.latest.result = CommandResult::not_reached;
+  image_.unheeded_stop = stop->at;
+  if (image_.latest.stop == stop->at) image_.latest.result = CommandResult::not_reached;
   host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(command_of(stop->kind)),
               fmt::format("the motor turns on after its {}, at velocity_actual {}: the stop is owed",
                           text(command_of(stop->kind)), *speed));
   owed_.unheeded(stop->kind, core_.store.exchange());
+}
+
+void Axis::on_held_back(const std::string& what, bool stop) {
+  core_.motion.record().hold_back();
+  host_.event(image_.number, EventKind::warning, 0, what);
+  if (stop) owed_.accepted(StopKind::quick_stop, core_.store.exchange());
 }
 
 // A later enable or start ends what is owed as soon as anything of it is carried out, or is so already. One that is
@@ -195,14 +201,6 @@ void Axis::note_begun(const Pending& pending, bool done) {
     tell_end(owed_.enabled_later());
   }
   if (starts_motion(command_sequence.batch().command)) tell_end(owed_.started_later());
-}
-
-// It still waits, and a stop that is sent again would drop it.
-bool Axis::ends_what_is_owed() const {
-  return std::any_of(pending_.begin(), pending_.end(), [this](const Pending& p) {
-    const WriteBatch& batch = p.command_sequence->batch();
-    return !p.command_sequence->is_stop() && (asks_to_enable(batch) || (owed_.halts() && starts_motion(batch.command)));
-  });
 }
 
 }  // namespace axisgate::drive

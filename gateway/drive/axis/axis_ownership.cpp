@@ -182,14 +182,15 @@ bool Axis::may_be_jog() const {
 
 void Axis::accept(const WriteBatch& batch) {
   if (!batch.jogs)
-    for (const Setpoint& sp : batch.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.ends());
-  if (batch.mode) accepted_.note(Quantity::mode, *batch.mode, core_.motion.ends());
+    for (const Setpoint& sp : batch.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.record().now());
+  if (batch.mode) accepted_.note(Quantity::mode, *batch.mode, core_.motion.record().now());
 }
 
 // Whoever commanded before must know that it is over: but what was refused, or asked for what is so, has ended nothing.
-void Axis::note_commanded(Pending& pending) {
-  if (!pending.acts_at || !pending.command_sequence->commanded()) return;
-  image_.endings.commanded(pending.command_sequence->batch().client, *std::exchange(pending.acts_at, std::nullopt));
+void Axis::note_commanded(const Pending& pending) {
+  const WriteBatch& batch = pending.batch();
+  const bool acts = batch.controlword || (batch.command != Command::none && !is_stop(batch.command));
+  if (acts && pending.command_sequence->commanded()) core_.motion.record().commanded(batch.client, pending.accepted);
 }
 
 // It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
@@ -200,7 +201,7 @@ void Axis::forget_accepted(const WriteBatch& batch) {
 
 bool Axis::owner_asks(ClientId client, Quantity quantity, std::int64_t value) const {
   if (!ownership_.rules().on || !ownership_.is_owner(client) || !image_.reachable()) return false;
-  const auto last = accepted_.value(quantity, core_.motion.ends());
+  const auto last = accepted_.value(quantity, core_.motion.record());
   if (last) return *last != value;
   // Nobody has asked for anything since the drive came up: what it holds is what counts; but a velocity or torque that
   // has lapsed is needed anew.
@@ -225,7 +226,7 @@ std::optional<BatchResult> Axis::release(const WriteBatch& batch, BatchCallback 
 
 BatchResult Axis::released(const WriteBatch& batch) {
   const auto owner = ownership_.owner();
-  const Errc code = ownership_.release(batch.life, may_be_enabled() || enable_is_asked(), core_.turn.now);
+  const Errc code = ownership_.release(batch.life, may_be_enabled() || pending_.enables(), core_.turn.now);
   if (code != Errc::ok) return refuse(batch, code);
   halt_jog("its owner has released the axis");
   if (owner) {
@@ -243,7 +244,7 @@ BatchResult Axis::released(const WriteBatch& batch) {
 std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallback on_result) {
   const auto owner = ownership_.owner();
   const bool from_another = owner && batch.life && owner->id != batch.life->id;
-  if (!from_another || !(may_be_enabled() || writes_wait())) return taken_over(batch, std::move(on_result));
+  if (!from_another || !(may_be_enabled() || pending_.writes())) return taken_over(batch, std::move(on_result));
   WriteBatch halt;
   halt.client = batch.client;
   halt.role = batch.role;
@@ -264,14 +265,6 @@ std::optional<BatchResult> Axis::take_over(const WriteBatch& batch, BatchCallbac
   if (halted) taken_by_.reset();
   if (halted && halted->outcome.code == Errc::ok) return taken_over(batch, std::move(on_result));
   return halted;
-}
-
-bool Axis::writes_wait() const {
-  return std::any_of(pending_.begin(), pending_.end(), [](const Pending& p) {
-    const WriteBatch& batch = p.command_sequence->batch();
-    const bool only_clears = batch.command == Command::fault_reset && !batch.controlword;  // which enables nothing
-    return !p.command_sequence->is_stop() && !reads_alone(batch) && !only_clears;
-  });
 }
 
 std::optional<BatchResult> Axis::taken_over(const WriteBatch& batch, BatchCallback on_result) {
@@ -310,7 +303,7 @@ void Axis::end_expired_lease() {
               : expired->owner->is_address ? " after its connections had ended"
                                            : " after its connection had ended";
   }
-  const bool acts = may_be_enabled() || writes_wait();
+  const bool acts = may_be_enabled() || pending_.writes();
   if (!acts || action == Command::none) {
     halt_jog("its owner's lease has run out");
     host_.event(image_.number, EventKind::lease, 0, what + (acts ? ": nothing is done (on_expiry none)" : ""));
@@ -332,7 +325,7 @@ void Axis::on_blind(model::ObjectId object) {
   const bool shows = core_.model.needs_for_state(object) || gives(Quantity::position_actual) ||
                      (core_.model.moving ? core_.model.moving->object == object : gives(Quantity::velocity_actual));
   const bool moves = core_.motion.running() != MotionKind::none || core_.motion.runs_raw() || jog_.active() ||
-                     motion_pending() || core_.facts().moving;
+                     pending_.starts_motion() || core_.facts().moving;
   if (!shows || !moves || core_.motion.stopping()) return;
   Command stop = command_of(ownership_.rules().on_expiry);
   if (stop == Command::none) stop = Command::quick_stop;
@@ -369,7 +362,7 @@ void Axis::on_client_gone(ClientId client) {
   // the motor, it is not left running.
   const bool nothing_else_would = core_.is_virtual() && !core_.drive.stops_by_itself;
   if (!nothing_else_would || motion_by_.client != client) return;
-  if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !motion_pending()) return;
+  if (core_.motion.running() == MotionKind::none && !core_.facts().moving && !pending_.starts_motion()) return;
   host_.event(image_.number, EventKind::command, 0,
               "the client that commanded the motion is gone: quick stop" +
                   (motion_by_.life ? " (" + motion_by_.life->name + ")" : std::string()));

@@ -27,7 +27,6 @@ void AxisPublisher::publish(const Jog& jog) {
   measure_cycle();
   core_.watch_fault();
   core_.motion.observe(core_.facts(), core_.model.homing_timeout);
-  tell_endings();
   AxisImage before = image_;
   before.lease.owner = std::exchange(owner_shown_, image_.lease.owner);  // it changes in the image itself
   image_.link_state = core_.turn.link;
@@ -43,14 +42,6 @@ void AxisPublisher::publish(const Jog& jog) {
   if (!image_.reachable()) return;
   tell_fault(before);
   if (changed) tell_changes(before);
-}
-
-// What the servers must know of it: what was commanded before is over, and its client must ask anew.
-void AxisPublisher::tell_endings() {
-  if (core_.motion.faults() != faults_counted_) image_.endings.faulted();
-  if (core_.motion.losses() != losses_counted_) image_.endings.lost();
-  faults_counted_ = core_.motion.faults();
-  losses_counted_ = core_.motion.losses();
 }
 
 void AxisPublisher::tell_link(const AxisImage& before) {

@@ -32,7 +32,6 @@ class AxisPublisher {
 
  private:
   void measure_cycle();
-  void tell_endings();
   void tell_link(const AxisImage& before);
   void tell_changes(const AxisImage& before);
   void tell_fault(const AxisImage& before);
@@ -43,8 +42,6 @@ class AxisPublisher {
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
   std::shared_ptr<const ClientLife> owner_shown_{};
-  std::uint64_t faults_counted_ = 0;
-  std::uint64_t losses_counted_ = 0;
   struct Fault {
     Instant since = kLongAgo;               ///< kLongAgo: there is none
     std::optional<std::uint16_t> logged{};  ///< its cause, as log and events have it

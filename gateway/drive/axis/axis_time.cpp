@@ -25,7 +25,7 @@ void Axis::on_time() {
   for (const Pending& p : pending_)
     if (std::any_of(p.callbacks.begin(), p.callbacks.end(), is_late(p))) late.push_back(p.id);
   for (const bus::JobId id : late) {
-    Pending* pending = find(id);
+    Pending* pending = pending_.find(id);
     if (pending == nullptr) continue;  // what was withdrawn for another has dropped it
     CommandSequence& command_sequence = *pending->command_sequence;
     auto& clients = pending->callbacks;

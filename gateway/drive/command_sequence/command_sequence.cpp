@@ -20,7 +20,7 @@ CommandSequence::CommandSequence(AxisCore& core, const WriteBatch& batch, bool s
       batch_(batch),
       stop_(stop),
       by_mailbox_(by_mailbox),
-      stops_before_(core.motion.stops()),
+      asked_(core.motion.record().now()),
       phase_(stop ? Phase::stop : Phase::setpoints) {
   // In the write batch's order the controlword comes before the command: carried out after the stop it could undo it,
   // and before it the stop would have to wait for it. A stop by controlword is part of the stop; anything else the stop
@@ -204,14 +204,12 @@ CommandSequence::Move CommandSequence::advance() {
   return {};
 }
 
-bool CommandSequence::tells_enable(const Action& action) const {
-  return is_enabling_word(core_, action.object, number_of(action));
-}
-
 // A word with the bits of operation enabled, for an axis that is not, by a write batch that does not ask for an enable.
 bool CommandSequence::enables_uncommanded(const Action& action) const {
   const bool asked = batch_.command == Command::enable || phase_ == Phase::controlword;
-  if (asked || action.kind != Action::Kind::write || writes_.verifying || !tells_enable(action)) return false;
+  if (asked || action.kind != Action::Kind::write || writes_.verifying ||
+      !is_enabling_word(core_, action.object, number_of(action)))
+    return false;
   const AxisFacts facts = core_.facts();
   return !facts.enabled() || !facts.commanded;
 }

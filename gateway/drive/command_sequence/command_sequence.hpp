@@ -74,6 +74,8 @@ class CommandSequence {
   /// What stands beside a stop is none, once it was queued again.
   [[nodiscard]] bool is_stop() const { return stop_ && !stop_attempt_.handed_over(); }
   [[nodiscard]] bool began_as_stop() const { return stop_; }
+  /// It knows of each stop up to this point: what a later one overtakes starts and enables nothing.
+  [[nodiscard]] AxisRecord::Point asked() const { return asked_; }
   /// The next move is a write that belongs to the stop: it passes a suspect drive's resynchronisation read.
   [[nodiscard]] bool passes_resync();
 
@@ -102,7 +104,6 @@ class CommandSequence {
   [[nodiscard]] bool in_command() const {
     return phase_ == Phase::controlword || phase_ == Phase::preparation || phase_ == Phase::command;
   }
-  [[nodiscard]] bool tells_enable(const Action& action) const;
   [[nodiscard]] bool enables_uncommanded(const Action& action) const;
   [[nodiscard]] bool is_command_of_motion(model::ObjectId object) const;
   [[nodiscard]] bool has_lost_torque() const;
@@ -124,7 +125,7 @@ class CommandSequence {
   bool stop_;
   bool by_mailbox_;
   Instant rest_held_ = kLongAgo;
-  std::uint64_t stops_before_;  ///< stops accepted by then: what a later one overtakes starts and enables nothing
+  AxisRecord::Point asked_;
   Phase phase_;
   StopAttempt stop_attempt_{};
   /// The plan of the phase, as far as it is carried out.

@@ -85,7 +85,7 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
 // that could enable a drive which has meanwhile restarted: that one is looked at first.
 void CommandSequence::on_lost_write(const Action& action) {
   const model::ObjectDef& object = core_.object(action.object);
-  const bool could_enable = tells_enable(action);
+  const bool could_enable = is_enabling_word(core_, action.object, number_of(action));
   core_.store.invalidate(action.object);
   if (!could_enable && repeat_stop()) return;
   if (object.trigger || !object.readable || (phase_ == Phase::stop && !could_enable)) {
@@ -213,7 +213,7 @@ bool CommandSequence::overtaken_by_stop(Mark mark) const {
     case Mark::start_homing:
     case Mark::controlword_passed:
     case Mark::run_raw:
-      return core_.motion.stops() != stops_before_;
+      return core_.motion.record().stopped_since(asked_);
     default:
       return false;
   }
@@ -253,11 +253,11 @@ void CommandSequence::reach(const Action& action) {
     case Mark::quick_stopped:
       if (!motion.latched()) motion.stop(true, core_.turn.now);
       motion.disarm();
-      stops_before_ = motion.stops();
+      asked_ = core_.motion.record().now();
       break;
     case Mark::halted:
       motion.stop(false, core_.turn.now);
-      stops_before_ = motion.stops();
+      asked_ = core_.motion.record().now();
       break;
     case Mark::run_raw:
       core_.sent_to.reset();

@@ -64,6 +64,7 @@ std::optional<bus::Exchange> Drive::on_grant(const bus::Arbiter::Grant& grant) {
   auto exchange = keep_alive_turn(grant.priority);
   if (!exchange) exchange = grant.id == 0 ? own_exchange() : exchange_of(grant);
   if (exchange) exchange = whole_frame(*exchange, grant);
+  if (exchange && !may_leave(*exchange, grant)) exchange.reset();
   if (exchange) {
     if (exchange->part != bus::Part::next) break_chain();
     widen(*exchange);
@@ -102,12 +103,12 @@ std::optional<bus::Exchange> Drive::exchange_of(const bus::Arbiter::Grant& grant
 }
 
 bool Drive::chain_open() const {
-  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->chain_job() != 0; });
+  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->pending().chain_job() != 0; });
 }
 
 bool Drive::waits_for_chain(const bus::Arbiter::Grant& grant) {
   if (!chain_open() || grant.priority < bus::Priority::interactive) return false;
-  if (on_wire_.axis != nullptr && on_wire_.axis->chain_job() == grant.id) return false;
+  if (on_wire_.axis != nullptr && on_wire_.axis->pending().chain_job() == grant.id) return false;
   constexpr Duration kChainPause = std::chrono::milliseconds(1);
   if (grant.id != 0) bus_.wait(grant.id, turn_.now + kChainPause);
   return true;
@@ -116,7 +117,7 @@ bool Drive::waits_for_chain(const bus::Arbiter::Grant& grant) {
 // The adapter tells the drive; the client whose object it was is told here.
 void Drive::break_chain() {
   for (auto& axis : axes_)
-    if (axis->chain_job() != 0) axis->on_job_ended(axis->chain_job(), Errc::busy);
+    if (axis->pending().chain_job() != 0) axis->on_job_ended(axis->pending().chain_job(), Errc::busy);
 }
 
 // A probe of a drive that is not there: its reply must not be one to something lost long ago.
@@ -173,7 +174,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
   const bool trusted = reads_.counts(asked.read);
   if (result.code == Errc::timed_out || result.code == Errc::bad_reply) {
     const bool stop_insists =
-        std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->insists(asked.job); });
+        std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->pending().insists(asked.job); });
     on_timeout(exchange, stop_insists);
   } else if (result.code == Errc::link_lost) {
     reads_.lost(exchange, turn_.now);                    // its reply may still come, after the line's return
@@ -197,7 +198,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       end_.on_result(result, trusted, store_);
       if (!end_.next()) finish_end();
     }
-    if (asked.axis != nullptr && asked.axis->has(asked.job)) {
+    if (asked.axis != nullptr && asked.axis->pending().find(asked.job) != nullptr) {
       owned = true;
       asked.axis->on_result(asked.job, result, asked.read.sent_at, trusted);
     }
@@ -227,12 +228,12 @@ void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
   if (gone && !stop_insists) {
     go_offline();
   } else if (turn_.link == LinkState::online && !reads_.expects_silence(exchange)) {
-    set_state(LinkState::suspect);
+    turn_.link = LinkState::suspect;
   }
 }
 
 void Drive::go_offline() {
-  set_state(LinkState::offline);
+  turn_.link = LinkState::offline;
   jobs_.setup = 0;
   unmap_values();
   bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
@@ -244,7 +245,7 @@ void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& 
   if (!on_wire_.read.counted) presence_.answered();
   const bool counts = reads_.counts(on_wire_.read);
   if (reads_.answered(exchange, result, on_wire_.read, turn_.now) && turn_.link == LinkState::suspect) {
-    set_state(LinkState::online);
+    turn_.link = LinkState::online;
     for (auto& axis : axes_) axis->on_invalidated();
   }
   if (counts) store_fields(exchange, result);
@@ -272,7 +273,7 @@ void Drive::on_link(bool up) {
   presence_.on_link(up, turn_.now);
   jobs_.setup = 0;
   unmap_values();
-  set_state(up ? LinkState::unknown : LinkState::link_down);
+  turn_.link = up ? LinkState::unknown : LinkState::link_down;
   after_event();
 }
 
@@ -284,8 +285,6 @@ void Drive::on_job_ended(const bus::Arbiter::Ending& ending) {
     if (ending.id == *job) *job = 0;
   after_event();
 }
-
-void Drive::set_state(LinkState state) { turn_.link = state; }
 
 void Drive::on_time() {
   begin_turn();

@@ -146,7 +146,8 @@ class Drive final : public bus::BusDrive, private AxisHost {
   void watch_positions();
   void unmap_values();
   void tell_all(EventKind kind, std::uint32_t code, const std::string& text);
-  void set_state(LinkState state);
+  /// The way out of all its axes; what does not pass ends its bus job.
+  [[nodiscard]] bool may_leave(const bus::Exchange& exchange, const bus::Arbiter::Grant& grant);
   void after_event();
   void bring_up_to_date();
   void on_time();

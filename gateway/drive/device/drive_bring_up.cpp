@@ -37,11 +37,11 @@ std::optional<bus::Exchange> Drive::next_of_bring_up() {
 
 void Drive::begin_bring_up(bool restarted) {
   if (end_.begun()) {  // nobody would see its end
-    set_state(LinkState::unknown);
+    turn_.link = LinkState::unknown;
     presence_.look_at(kNever);
     return;
   }
-  set_state(LinkState::setup);
+  turn_.link = LinkState::setup;
   presence_.found();
   if (jobs_.setup != 0) bus_.finish(std::exchange(jobs_.setup, 0));  // what was left of its setup is done anew
   unmap_values();
@@ -53,7 +53,7 @@ void Drive::begin_bring_up(bool restarted) {
   jobs_.setup = queue_own(bus::Priority::setup);
   // A full queue empties by its deadlines: try again after a probe's pause.
   if (jobs_.setup == 0) {
-    set_state(LinkState::unknown);
+    turn_.link = LinkState::unknown;
     presence_.look_at(turn_.now + bus::Backoff::kFirst);
   }
 }
@@ -182,7 +182,7 @@ void Drive::end_bring_up() {
           "setup: the drive does not hold what was written to " + model_.object(id).name);
   for (auto& axis : axes_) axis->set_alarm(AxisAlarm::adopted_running, bring_up_.adopted());
   judge_loss_reaction();
-  set_state(LinkState::online);
+  turn_.link = LinkState::online;
   if (bring_up_.adopted())
     for (auto& axis : axes_) axis->on_adopted();
   for (const auto& axis : axes_)
@@ -221,7 +221,7 @@ bool Drive::may_be_set_up_again() const {
 }
 
 bool Drive::enable_is_asked() const {
-  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->enable_is_asked(); });
+  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->pending().enables(); });
 }
 
 // What the drive refused of its setup for now: a heartbeat it must send, or what makes it notice a dead gateway. Tried

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a drive asks of its bus for itself, beside bring-up: what names a fault, its keep-alive, its end.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "gateway/drive/device/drive.hpp"
 #include "gateway/drive/device/requests.hpp"
+#include "gateway/drive/plan/admission.hpp"
+#include "gateway/drive/plan/way_out.hpp"
 
 namespace axisgate::drive {
 
@@ -62,9 +66,9 @@ DriveControl::Turn Drive::control_turn() const {
                           .axes = {}};
   for (const auto& axis : axes_)
     turn.axes.push_back({.core = axis->core(),
-                         .enabling = axis->enabling(),
-                         .disabling = axis->disable_waits(),
-                         .stopping = axis->stopping() || axis->owes_stop(),
+                         .enabling = axis->pending().enables(true),
+                         .disabling = axis->pending().disables(),
+                         .stopping = axis->pending().stopping() || axis->owes_stop(),
                          .live = axis->commands_live()});
   return turn;
 }
@@ -89,6 +93,35 @@ std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, c
   }
   if (Axis* owner = axis_of(grant.axis)) owner->on_job_ended(grant.id, Errc::state_unsuitable);
   return std::nullopt;
+}
+
+// Whoever has planned it: by what it would do to each motor that it reaches.
+bool Drive::may_leave(const bus::Exchange& exchange, const bus::Arbiter::Grant& grant) {
+  if (exchange.access != bus::Access::write) return true;
+  const model::ObjectId object = model_.find(exchange.object);
+  if (object == model::kNoObject) return true;
+  const std::int64_t number = model_.object(object).number(exchange.raw);
+  const Pending* const pending = on_wire_.axis == nullptr ? nullptr : on_wire_.axis->pending().find(grant.id);
+  Sender sender{.keeps = on_wire_.keeps_alive.has_value()};
+  if (pending != nullptr) {
+    const CommandSequence& sequence = *pending->command_sequence;
+    sender = {.asked = sequence.asked(), .stops = sequence.is_stop(), .begins = asks_to_begin(pending->batch())};
+  }
+  const AxisSlot slot = model_.object(object).slot;
+  for (auto& axis : axes_) {
+    if (slot != kNoAxis && axis != axes_[slot]) continue;
+    const Errc code = held_on_way_out(axis->core(), object, number, sender);
+    if (code == Errc::ok) continue;
+    axis->on_held_back(fmt::format("{} = {} was held back: {}", model_.object(object).name, number,
+                                   code == Errc::dropped_by_stop ? "a stop is newer" : "nobody has asked for it"),
+                       sender.stops);
+    if (pending != nullptr)
+      on_wire_.axis->on_job_ended(grant.id, code);
+    else if (on_wire_.keeps_alive)
+      control_.failed(*on_wire_.keeps_alive, turn_.now);
+    return false;
+  }
+  return true;
 }
 
 // Takes and gives up a place in the queue as it is needed; says when it must be looked at again.
@@ -131,8 +164,8 @@ void Drive::reopen() {
 
 // Stops go first, to their end: what a motor does is not known before.
 std::optional<bus::Exchange> Drive::next_of_end() {
-  const bool stops =
-      std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return !axis->idle() || axis->owes_stop(); });
+  const bool stops = std::any_of(axes_.begin(), axes_.end(),
+                                 [](const auto& axis) { return !axis->pending().empty() || axis->owes_stop(); });
   if (stops) {
     bus_.wait(jobs_.end, turn_.now + DriveEnd::kStopsFirst);
     return std::nullopt;
@@ -153,7 +186,7 @@ void Drive::finish_end() {
 void Drive::tell_closed() {
   if (jobs_.end != 0) return;
   for (const auto& axis : axes_)
-    if (!axis->idle()) return;
+    if (!axis->pending().empty()) return;
   if (const auto closed = end_.take_closed()) closed();
 }
 

@@ -8,19 +8,21 @@
 #include <optional>
 
 #include "gateway/core/rational.hpp"
+#include "gateway/image/axis_record.hpp"
 #include "gateway/image/command.hpp"
 
 namespace axisgate::drive {
 
 class Jog {
  public:
-  void start(Command direction, ClientId client, Instant now, Duration timeout) {
+  /// `pressed`: the point in its axis's record, which names this jog.
+  void start(Command direction, ClientId client, Instant now, Duration timeout, AxisRecord::Point pressed) {
     direction_ = direction;
     client_ = client;
     until_ = now + timeout;
     timeout_ = timeout;
     carried_ = false;
-    ++presses_;
+    pressed_ = pressed;
   }
   /// Its coil was written 1 once more; false: it is no jog of this client's, or has ended.
   [[nodiscard]] bool again(Command direction, ClientId client, Instant now) {
@@ -32,8 +34,8 @@ class Jog {
   /// The drive is out of sight, or its answer was lost: the axis may run all the same, so its button counts on.
   void carry() { carried_ = true; }
   [[nodiscard]] bool carried() const { return active() && carried_; }
-  /// The number of this jog; 0: none runs.
-  [[nodiscard]] std::uint64_t press() const { return active() ? presses_ : 0; }
+  /// The point at which this jog was begun; 0: none runs.
+  [[nodiscard]] AxisRecord::Point pressed() const { return active() ? pressed_ : 0; }
 
   [[nodiscard]] bool active() const { return direction_ != Command::none; }
   /// jog_forward, jog_reverse, or none.
@@ -48,7 +50,7 @@ class Jog {
   Instant until_ = kNever;
   Duration timeout_{};
   bool carried_ = false;
-  std::uint64_t presses_ = 0;
+  AxisRecord::Point pressed_ = 0;
 };
 
 /// What a jog near a position limit is judged by. All in register units.

@@ -48,7 +48,7 @@ void Motion::stop(bool latch, Instant now) {
   // What stood, and was not being started, stands: no sample of it is of before.
   const bool stood = rests_ && kind_ == MotionKind::none && !raw_run_ && !target_reached_masked_;
   end(MotionState::aborted);
-  ++stops_;
+  record_.stop();
   sightings_.asked();
   if (!stood) {
     stopping_ = true;
@@ -133,7 +133,7 @@ void Motion::end(MotionState how) {
   raw_run_ = arrived_ = false;
   wanted_[kVelocity].reset();
   wanted_[kTorque].reset();
-  ++ends_;
+  record_.end();
 }
 
 void Motion::complete(Instant now) {
@@ -162,6 +162,8 @@ void Motion::observe(const AxisFacts& facts, Duration homing_timeout) {
   if (!facts.reachable || stands(facts)) stopping_ = false;
   // Targets written while it is disabled or faulted are kept for the start that follows: only the change ends things.
   const Sightings::Changes changes = sightings_.see(facts);
+  if (changes.faulted) record_.faulted();
+  if (changes.lost) record_.lost();
   if (!facts.enabled()) {
     // A start is given to an enabled axis alone. A raw 15 is what enables it: the statusword from before it, and those
     // of the time that the drive needs, end nothing.

@@ -28,16 +28,16 @@ struct Wanted {
 class Motion {
  public:
   /// `velocity_lag`: how long after a change the sampled velocity may still show what was before.
-  explicit Motion(Duration velocity_lag) : velocity_lag_(velocity_lag) {}
+  /// `record`: its axis's, where it notes each stop, each end, and what it sees of faults and losses.
+  Motion(Duration velocity_lag, AxisRecord& record) : velocity_lag_(velocity_lag), record_(record) {}
+
+  [[nodiscard]] AxisRecord& record() const { return record_; }
 
   // --- Stops and the stop latch -------------------------------------------------------------------------------------
 
   /// A stop was accepted: the motion is over, velocity and torque are needed again. `latch`: quick_stop and lease
   /// actions.
   void stop(bool latch, Instant now);
-  /// How many stops were accepted: what a write batch that was accepted before the newest one starts or enables does
-  /// not count.
-  [[nodiscard]] std::uint64_t stops() const { return stops_; }
   /// One was accepted while it moved, or may have, and it was not seen to stand since.
   [[nodiscard]] bool stopping() const { return stopping_; }
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
@@ -97,11 +97,6 @@ class Motion {
     for (auto& wanted : wanted_)
       if (wanted) wanted->exact.reset();
   }
-  /// How often velocity and torque were made void until now.
-  [[nodiscard]] std::uint64_t ends() const { return ends_; }
-  /// How often a fault, and the loss of the drive, were seen.
-  [[nodiscard]] std::uint64_t faults() const { return sightings_.faults(); }
-  [[nodiscard]] std::uint64_t losses() const { return sightings_.losses(); }
   /// New samples. Ends the motion where they show its end.
   void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
@@ -143,10 +138,9 @@ class Motion {
   [[nodiscard]] bool move_under_way(const AxisFacts& facts) const;
 
   Duration velocity_lag_;
+  AxisRecord& record_;
   bool latched_ = false;
   bool unlatch_armed_ = false;
-  std::uint64_t stops_ = 0;
-  std::uint64_t ends_ = 0;
   bool raw_run_ = false;
   bool stopping_ = false;
   bool rests_ = false;  ///< by the newest samples, with no set-point that it follows

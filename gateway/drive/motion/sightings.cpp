@@ -13,8 +13,6 @@ Sightings::Changes Sightings::see(const AxisFacts& facts) {
   faulted_ = facts.faulted();
   reachable_ = facts.reachable;
   enabled_ = facts.enabled();
-  if (changes.faulted) ++faults_;
-  if (changes.lost) ++losses_;
   return changes;
 }
 

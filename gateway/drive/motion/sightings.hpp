@@ -5,8 +5,6 @@
 // change ends: the motion rules do.
 #pragma once
 
-#include <cstdint>
-
 #include "gateway/drive/motion/axis_facts.hpp"
 
 namespace axisgate::drive {
@@ -28,9 +26,6 @@ class Sightings {
   [[nodiscard]] bool found() const { return found_; }
   /// The same by the newest samples, and the gateway had not seen it before.
   [[nodiscard]] bool found_at_start() const { return found_at_start_; }
-  /// How often a fault, and the loss of the drive, were seen.
-  [[nodiscard]] std::uint64_t faults() const { return faults_; }
-  [[nodiscard]] std::uint64_t losses() const { return losses_; }
 
  private:
   bool faulted_ = false;  ///< by the samples seen last, as are the two below
@@ -39,8 +34,6 @@ class Sightings {
   bool ever_reachable_ = false;
   bool found_ = false;
   bool found_at_start_ = false;
-  std::uint64_t faults_ = 0;
-  std::uint64_t losses_ = 0;
 };
 
 }  // namespace axisgate::drive

@@ -11,6 +11,7 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/drive/motion/owed_stop.hpp"
+#include "gateway/image/axis_record.hpp"
 
 namespace axisgate::drive {
 
@@ -22,10 +23,10 @@ class StopWatch {
   /// In each of these it must get slower, or in the time in which its velocity can be measured, where that is longer.
   static constexpr Duration kWindow = std::chrono::seconds(1);
 
-  /// What is watched: the stop with this number (Motion::stops()).
+  /// What is watched: the stop that was accepted at this point.
   struct Stop {
     StopKind kind = StopKind::halt;
-    std::uint64_t number = 0;
+    AxisRecord::Point at = 0;
   };
   /// The drive has shown it.
   void begin(Stop stop) {

@@ -127,6 +127,14 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
 
 }  // namespace
 
+// Bit 8 of a drive whose profile knows of no halt bit would be answered as done, and the motor would run on: what its
+// profile halts by is carried out in its place.
+bool asks_for_missing_halt(const AxisCore& core, const WriteBatch& batch) {
+  if (!batch.controlword || batch.command != Command::none || !model::enables(*batch.controlword)) return false;
+  const bool rises = (*batch.controlword & ~core.controlword() & model::controlword::kHalt) != 0;
+  return rises && core.facts().enabled() && !halts_by_word(core);
+}
+
 Plan look_at_state(const AxisCore& core) {
   Plan plan;
   plan.add(Action::read(core.model.statusword));

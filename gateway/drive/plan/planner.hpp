@@ -64,6 +64,8 @@ inline constexpr Duration kStopLimit = std::chrono::seconds(5);
 [[nodiscard]] model::Condition torque_off(const AxisCore& core);
 /// Halt on this drive in the mode in force is carried out by quick_stop.
 [[nodiscard]] bool halt_is_quick_stop(const AxisCore& core);
+/// Bit 8 rises in the word, and this drive has no such halt: what its profile halts by takes its place.
+[[nodiscard]] bool asks_for_missing_halt(const AxisCore& core, const WriteBatch& batch);
 /// In the mode in force the axis halts by bit 8 of the controlword: its profile's halt is that bit, or it is virtual.
 [[nodiscard]] bool halts_by_word(const AxisCore& core);
 /// What must be written before a halt may end, and the controlword without bit 8.

@@ -27,7 +27,7 @@ struct AxisCore {
   const model::AxisModel& model;
   ObjectStore& store;
   const Turn& turn;  ///< its drive's
-  Motion motion{model.velocity_lag};
+  Motion motion;
   std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
   std::uint16_t loss_stop_ms = kLossNotKnown;   ///< row 98
   FaultWatch fault{};                           ///< what names a fault, and what must be read for it

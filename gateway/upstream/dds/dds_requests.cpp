@@ -38,15 +38,15 @@ struct DdsRequests::Run {
   AxisNumber axis;
   CommandPlan plan;
   Done done;
-  std::uint64_t stops = 0;   ///< of the axis through this session, when it began
-  Endings::Point since = 0;  ///< when it began
+  std::uint64_t stops = 0;      ///< of the axis through this session, when it began
+  AxisRecord::Point since = 0;  ///< when it began
   std::size_t next = 0;
   /// There was a stop, by whichever way: what is left of it was asked before.
   [[nodiscard]] bool stopped(const StopOrder& order, const ProcessImage& image) const {
     if (next == plan.batches.size()) return false;
     const AxisImage* const there = image.find(axis);
     return order.count(axis) != stops ||
-           (there != nullptr && there->endings.interrupted(since, plan.batches[next].client));
+           (there != nullptr && there->record.interrupted(since, plan.batches[next].client));
   }
 };
 
@@ -282,7 +282,7 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
 void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
   const auto run = std::make_shared<Run>(Run{self_, commands_, axis, std::move(plan), std::move(done)});
   run->stops = stop_order_.count(axis);
-  if (const AxisImage* const there = image_.find(axis)) run->since = there->endings.now();
+  if (const AxisImage* const there = image_.find(axis)) run->since = there->record.now();
   replies_.begin();
   const auto result = carry_on(run, {});
   if (!result) return;

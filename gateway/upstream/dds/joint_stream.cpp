@@ -16,7 +16,7 @@ JointView joint_view(const AxisImage& axis, double position, double tolerance, C
                !axis.has(AxisInput::stop_latched) && !of_before;
   view.position = position;
   view.tolerance = tolerance;
-  view.endings = axis.endings;
+  view.record = axis.record;
   view.client = client;
   return view;
 }
@@ -30,7 +30,7 @@ void JointStream::restart() {
 }
 
 void JointStream::look_for_endings(const JointView& axis) {
-  if (!axis.ready || (in_step_ && axis.endings.ended(since_, axis.client))) restart();
+  if (!axis.ready || (in_step_ && axis.record.ended(since_, axis.client))) restart();
 }
 
 // A velocity leads away from the position that the stream was at, so each way of control comes into step by itself.
@@ -46,7 +46,7 @@ bool JointStream::in_step(const JointTarget& target, double position, const Join
     return false;
   }
   in_step_ = target.is_velocity;
-  since_ = axis.endings.now();
+  since_ = axis.record.now();
   asked_.reset();
   waiting_.reset();
   astray_reported_ = false;

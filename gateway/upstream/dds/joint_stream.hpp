@@ -25,7 +25,7 @@ struct JointView {
   bool ready = false;
   double position = 0;
   double tolerance = 0;
-  Endings endings{};
+  AxisRecord record{};
   ClientId client = 0;  ///< who asks for this stream
 };
 [[nodiscard]] JointView joint_view(const AxisImage& axis, double position, double tolerance, ClientId client);
@@ -56,7 +56,7 @@ class JointStream {
 
   Guid writer_{};
   std::optional<bool> in_step_;  ///< with velocities, or with positions; none: with neither
-  Endings::Point since_ = 0;     ///< when it came into step
+  AxisRecord::Point since_ = 0;  ///< when it came into step
   std::optional<JointTarget> asked_{};
   std::optional<JointTarget> waiting_{};
   bool busy_ = false;

@@ -63,7 +63,7 @@ TEST_F(Stream, IsToldOnceThatItIsAstray) {
   EXPECT_FALSE(stream.take_astray());
   in_step();
   EXPECT_FALSE(stream.take_astray());
-  axis.endings.stopped(kAnother);
+  axis.record.stopped(kAnother);
   EXPECT_FALSE(at(0));
   EXPECT_TRUE(stream.take_astray());
 }
@@ -115,19 +115,19 @@ TEST_F(Stream, MustBeSeenAtTheAxisAgainAfterAnythingThatEndsMotions) {
     ASSERT_FALSE(ends());
     EXPECT_TRUE(at(7));
   };
-  each([&] { axis.endings.stopped(kMe); });
-  each([&] { axis.endings.stopped(kAnother); });
-  each([&] { axis.endings.stopped(0); });  // a lease
-  each([&] { axis.endings.faulted(); });
-  each([&] { axis.endings.lost(); });
-  each([&] { axis.endings.commanded(kAnother, axis.endings.accepted()); });
+  each([&] { axis.record.stopped(kMe); });
+  each([&] { axis.record.stopped(kAnother); });
+  each([&] { axis.record.stopped(0); });  // a lease
+  each([&] { axis.record.faulted(); });
+  each([&] { axis.record.lost(); });
+  each([&] { axis.record.commanded(kAnother, axis.record.accepted()); });
   each([&] { axis.ready = false; });
   each([&] { stream.restart(); });
 }
 
 TEST_F(Stream, GoesOnBesideItsOwnCommands) {
   in_step();
-  axis.endings.commanded(kMe, axis.endings.accepted());
+  axis.record.commanded(kMe, axis.record.accepted());
   EXPECT_TRUE(at(7));
 }
 
@@ -141,7 +141,7 @@ TEST_F(Stream, DropsWhatWaitsWhenTheAxisIsStopped) {
   in_step();
   EXPECT_TRUE(at(6));
   EXPECT_FALSE(at(7));
-  axis.endings.stopped(kAnother);
+  axis.record.stopped(kAnother);
   EXPECT_FALSE(ends(Errc::stopped_by_other));
 }
 
@@ -174,7 +174,7 @@ TEST_F(Stream, OfVelocitiesActsOnceItWasZero) {
   EXPECT_FALSE(ends());
   EXPECT_EQ(runs(300), (JointTarget{true, 300}));
   EXPECT_FALSE(ends());
-  axis.endings.stopped(kAnother);
+  axis.record.stopped(kAnother);
   EXPECT_FALSE(runs(300));
 }
 

@@ -184,7 +184,7 @@ TEST_F(BetweenItsBatches, ItsOwnReleaseEndsIt) {
 }
 
 TEST_F(BetweenItsBatches, AStopOfAModbusClientEndsIt) {
-  plain.image.find(1)->endings.stopped(77);
+  plain.image.find(1)->record.stopped(77);
   EXPECT_THAT(velocity_is_written(), ElementsAre(ReplyRecord{1, 1, guid(1), kNeverStarted, 0}));
   EXPECT_THAT(plain.port.submitted, IsEmpty());
 }

@@ -35,7 +35,8 @@ class MakersFacts : public testing::Test {
   model::DriveModel model;
   ObjectStore store;
   Turn turn{.now = kLongAgo, .link = LinkState::online};
-  AxisCore core{model, model.axes[0], store, turn};
+  AxisRecord record;
+  AxisCore core{model, model.axes[0], store, turn, Motion{model.axes[0].velocity_lag, record}};
 };
 
 TEST_F(MakersFacts, ATargetThatTheDriveWouldFollowIsHeldBack) {
@@ -57,7 +58,7 @@ TEST_F(MakersFacts, AModeOfItsOwnIsAVelocityModeWhereTheProfileSaysSo) {
 
 TEST_F(MakersFacts, AVelocityIsBelievedWhenItsLagIsOver) {
   for (const Duration lag : {Duration{}, Duration(milliseconds(300))}) {
-    Motion motion(lag);
+    Motion motion(lag, record);
     AxisFacts facts = core.facts();
     facts.mode = 3;
     motion.observe(facts, milliseconds(60000));

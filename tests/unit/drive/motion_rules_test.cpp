@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/drive/motion/motion.hpp"
-#include "gateway/image/endings.hpp"
+#include "gateway/image/axis_record.hpp"
 #include "tests/unit/drive/alone.hpp"
 
 namespace axisgate::drive {
@@ -13,7 +13,8 @@ using namespace std::chrono_literals;
 constexpr Duration kHomingTimeout = 60s;
 
 struct Stage {
-  Motion motion{std::chrono::milliseconds(300)};
+  AxisRecord record;
+  Motion motion{std::chrono::milliseconds(300), record};
   AxisFacts facts;
   Stage() {
     facts.at = kStart;
@@ -281,12 +282,12 @@ TEST(MotionRules, WhatHasArrivedStandsWhateverOldVelocityIsShown) {
 // Two commands are told in another order than they were accepted in: whoever looks sees the later one.
 TEST(MotionRules, TheLaterOfTwoCommandsCountsWhicheverIsToldFirst) {
   constexpr ClientId kOne = 1, kTwo = 2, kThird = 3;
-  Endings endings;
-  const auto first = endings.accepted(), between = endings.accepted(), second = endings.accepted();
-  endings.commanded(kTwo, second);
-  endings.commanded(kOne, first);
-  EXPECT_TRUE(endings.ended(between, kThird));
-  EXPECT_FALSE(endings.ended(between, kTwo));
+  AxisRecord record;
+  const auto first = record.accepted(), between = record.accepted(), second = record.accepted();
+  record.commanded(kTwo, second);
+  record.commanded(kOne, first);
+  EXPECT_TRUE(record.ended(between, kThird));
+  EXPECT_FALSE(record.ended(between, kTwo));
 }
 
 TEST(MotionRules, AStopOfWhatStandsLeavesItStanding) {

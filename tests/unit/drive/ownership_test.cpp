@@ -283,7 +283,7 @@ TEST_F(Owned, AnAxisFoundEnabledIsOpenUntilItsLeaseRunsOut) {
 
 TEST(Jog, EndsUnlessItsCoilIsWrittenAgainInTime) {
   Jog jog;
-  jog.start(Command::jog_forward, 1, kStart, 500ms);
+  jog.start(Command::jog_forward, 1, kStart, 500ms, 1);
   EXPECT_FALSE(jog.expired(kStart + 499ms));
   static_cast<void>(jog.again(Command::jog_forward, 1, kStart + 400ms));
   EXPECT_FALSE(jog.expired(kStart + 899ms));
@@ -294,7 +294,7 @@ TEST(Jog, EndsUnlessItsCoilIsWrittenAgainInTime) {
 
 TEST(Jog, IsNotBegunAnewByAButtonThatIsStillHeld) {
   Jog jog;
-  jog.start(Command::jog_forward, 1, kStart, 500ms);
+  jog.start(Command::jog_forward, 1, kStart, 500ms, 1);
   jog.end();
   static_cast<void>(jog.again(Command::jog_forward, 1, kStart + 100ms));
   EXPECT_FALSE(jog.active());

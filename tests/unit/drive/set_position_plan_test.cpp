@@ -72,7 +72,8 @@ class SetPosition : public testing::Test {
   model::DriveModel model;
   ObjectStore store;
   Turn turn{.now = kLongAgo, .link = LinkState::online};
-  AxisCore core{model, model.axes[0], store, turn};
+  AxisRecord record;
+  AxisCore core{model, model.axes[0], store, turn, Motion{model.axes[0].velocity_lag, record}};
 };
 
 TEST_F(SetPosition, TheModeThatMovesIsLeftBeforeTheFirstStep) {

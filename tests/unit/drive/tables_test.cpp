@@ -240,7 +240,8 @@ TEST(Admission, TellsTheArbiterWhatABatchIs) {
   const model::DriveModel model = polled();
   ObjectStore store(model.objects.size());
   const Turn turn;
-  AxisCore core{model, model.axes[0], store, turn};
+  AxisRecord record;
+  AxisCore core{model, model.axes[0], store, turn, Motion{model.axes[0].velocity_lag, record}};
   WriteBatch batch;
   batch.start_by = kStart;
   batch.object = ObjectRequest{false, 0x2001, 0, 2, 0};

@@ -33,7 +33,7 @@ TEST(ProcessImage, AnAxisThatIsTakenOutIsSeenToGoAndWhatItDidHasEnded) {
   ProcessImage image;
   const AxisImage* const axis = &image.add_axis(3, "lift", 0);
   const std::uint32_t before = axis->sequence;
-  const Endings::Point since = axis->endings.now();
+  const AxisRecord::Point since = axis->record.now();
   image.changes.take([](std::size_t) {});
   image.remove_axis(3);
   std::size_t marked = 0;
@@ -42,7 +42,7 @@ TEST(ProcessImage, AnAxisThatIsTakenOutIsSeenToGoAndWhatItDidHasEnded) {
   EXPECT_EQ(image.find(3), nullptr);
   EXPECT_EQ(&image.add_axis(3, "lift", 0), axis) << "whoever holds it may go on";
   EXPECT_EQ(axis->sequence, before + 1);
-  EXPECT_TRUE(axis->endings.interrupted(since, 1));
+  EXPECT_TRUE(axis->record.interrupted(since, 1));
 }
 
 }  // namespace

@@ -157,7 +157,7 @@ class Player {
         {"unit", [&] { unit_ = static_cast<std::uint8_t>(number()); }},
         {"add", [&] { desk_.image.add_axis(static_cast<AxisNumber>(number()), "far", 0); }},
         {"offline", [&] { axis.link_state = LinkState::offline; }},
-        {"faulted", [&] { axis.endings.faulted(); }},
+        {"faulted", [&] { axis.record.faulted(); }},
         {"lacks", [&] { axis.supported &= ~bit(quantity()); }},
         {"fixed", [&] { axis.writable &= ~bit(quantity()); }},
         {"unknown", [&] { axis[quantity()].received = false; }},

@@ -44,12 +44,12 @@ TEST(EdgesOfPrograms, what_a_connection_repeats_is_not_new_whatever_others_of_it
 TEST(EdgesOfPrograms, what_another_program_has_overtaken_is_not_new_once_its_action_was_ended) {
   EdgeMemory memory;
   CommandIds ids;
-  Endings endings;
+  AxisRecord record;
   const auto write = [&](std::uint16_t id, std::optional<std::uint16_t> own, Duration connected, Duration now) {
     Writing writing = in_a_block(now);
     writing.own.id = own;
     writing.connected_at = Instant{} + connected;
-    writing.endings = &endings;
+    writing.record = &record;
     return memory.command_with_id(Command::run_velocity, id, ids, writing);
   };
   EXPECT_EQ(write(3, {}, 0ms, 10ms), Verdict::not_new);
@@ -57,14 +57,14 @@ TEST(EdgesOfPrograms, what_another_program_has_overtaken_is_not_new_once_its_act
   EXPECT_EQ(write(900, {}, 15ms, 30ms), Verdict::acts) << "of another program: its connection was there before";
   EXPECT_EQ(write(4, {}, 40ms, 50ms), Verdict::acts) << "nothing was ended";
   EXPECT_EQ(write(901, 900, 15ms, 60ms), Verdict::acts);
-  endings.stopped(kProgram);
+  record.stopped(kProgram);
   EXPECT_EQ(write(4, {}, 70ms, 80ms), Verdict::not_new) << "the first id of a connection";
   EXPECT_EQ(write(4, {}, 90ms, 100ms), Verdict::nothing) << "and the last of the address by then";
   EXPECT_EQ(write(902, 901, 15ms, 110ms), Verdict::acts);
   EXPECT_EQ(write(5, 4, 90ms, 120ms), Verdict::acts) << "its program goes on";
   EXPECT_EQ(write(4, {}, 130ms, 140ms), Verdict::acts) << "and has left the id";
   EXPECT_EQ(write(6, {}, 150ms, 160ms), Verdict::acts) << "of a successor, which has overtaken nothing";
-  endings.stopped(kProgram);
+  record.stopped(kProgram);
   EXPECT_EQ(write(4, {}, 170ms, 180ms), Verdict::acts) << "so the id of the address decides";
 }
 

@@ -195,29 +195,29 @@ TEST(Edges, what_a_connection_repeats_without_an_id_is_not_new_either) {
 TEST(Edges, a_single_repetition_is_not_new_after_what_ended_its_action) {
   struct Ending {
     const char* what;
-    std::function<void(Endings&)> happens;
+    std::function<void(AxisRecord&)> happens;
     Verdict soon;   ///< pressed again within rearm_ms
     Verdict later;  ///< pressed again after it
   };
   const Ending endings[] = {
-      {"nothing", [](Endings&) {}, kNothing, kActs},
-      {"its own stop", [](Endings& e) { e.stopped(kMe); }, kNotNew, kActs},
-      {"another client's stop", [](Endings& e) { e.stopped(kOther); }, kNotNew, kNotNew},
-      {"the gateway's own stop", [](Endings& e) { e.stopped(0); }, kNotNew, kNotNew},
-      {"another's and its own", [](Endings& e) { e.stopped(kOther), e.stopped(kMe); }, kNotNew, kNotNew},
-      {"a fault", [](Endings& e) { e.faulted(); }, kNotNew, kNotNew},
-      {"a link loss", [](Endings& e) { e.lost(); }, kNotNew, kNotNew},
-      {"its own command", [](Endings& e) { e.commanded(kMe, e.accepted()); }, kNothing, kActs},
-      {"another client's command", [](Endings& e) { e.commanded(kOther, e.accepted()); }, kNotNew, kActs},
+      {"nothing", [](AxisRecord&) {}, kNothing, kActs},
+      {"its own stop", [](AxisRecord& e) { e.stopped(kMe); }, kNotNew, kActs},
+      {"another client's stop", [](AxisRecord& e) { e.stopped(kOther); }, kNotNew, kNotNew},
+      {"the gateway's own stop", [](AxisRecord& e) { e.stopped(0); }, kNotNew, kNotNew},
+      {"another's and its own", [](AxisRecord& e) { e.stopped(kOther), e.stopped(kMe); }, kNotNew, kNotNew},
+      {"a fault", [](AxisRecord& e) { e.faulted(); }, kNotNew, kNotNew},
+      {"a link loss", [](AxisRecord& e) { e.lost(); }, kNotNew, kNotNew},
+      {"its own command", [](AxisRecord& e) { e.commanded(kMe, e.accepted()); }, kNothing, kActs},
+      {"another client's command", [](AxisRecord& e) { e.commanded(kOther, e.accepted()); }, kNotNew, kActs},
   };
   for (const Ending& ending : endings) {
     SCOPED_TRACE(ending.what);
     for (const Duration pause : {10ms, 1000ms}) {
       EdgeMemory memory;
-      Endings history;
+      AxisRecord history;
       const auto press = [&](Duration when, Command command) {
         Writing writing = single(when);
-        writing.endings = &history;
+        writing.record = &history;
         return memory.command(command, writing);
       };
       EXPECT_EQ(press(0ms, move_absolute), kActs);
@@ -327,10 +327,10 @@ TEST(Edges, what_a_failed_request_has_done_before_stays_pressed) {
 }
 
 TEST(Edges, what_was_sent_before_it_failed_has_acted_as_far_as_anothers_stop_is_concerned) {
-  Endings endings;
+  AxisRecord record;
   const auto writing = [&](std::uint64_t request, Duration at) {
     Writing out = of_request(request, single(at));
-    out.endings = &endings;
+    out.record = &record;
     return out;
   };
   EdgeMemory memory;
@@ -338,7 +338,7 @@ TEST(Edges, what_was_sent_before_it_failed_has_acted_as_far_as_anothers_stop_is_
   memory.forget_presses(1, true);
   EXPECT_EQ(memory.command(enable, writing(2, 10ms)), kActs) << "nobody else has stopped it";
   memory.forget_presses(2, true);
-  endings.stopped(kOther);
+  record.stopped(kOther);
   EXPECT_EQ(memory.command(enable, writing(3, 20ms)), kNotNew);
 }
 

@@ -57,7 +57,7 @@ TEST_F(Writes, what_waits_behind_a_mask_has_its_deadlines_from_its_arrival_and_e
   const ClientId plcs = last().client;
   EXPECT_EQ(desk.asked(), "controlword=F alone, controlword=10 alone, move_absolute");
   plc.send("16 00 8C FF EF 00 00");
-  desk.axis(1).endings.stopped(plcs);
+  desk.axis(1).record.stopped(plcs);
   desk.port.finish();
   desk.port.finish();
   EXPECT_EQ(desk.asked(), "-");

@@ -16,16 +16,16 @@ bool is_so(Command command, const Writing& writing) {
   return command == Command::fault_reset && !writing.needs_zero;
 }
 
-const Endings& endings_of(const Writing& writing) {
-  static const Endings kNothing;
-  return writing.endings == nullptr ? kNothing : *writing.endings;
+const AxisRecord& record_of(const Writing& writing) {
+  static const AxisRecord kNothing;
+  return writing.record == nullptr ? kNothing : *writing.record;
 }
 
 /// A program that has lost its connection brings what another one has stopped since.
 bool repeats_interrupted(std::uint16_t id, const CommandIds& ids, const Writing& writing) {
   constexpr ClientId kAnybody = ~ClientId{0};
   return !writing.own.id && std::ranges::any_of(ids.overtaken, [&](const CommandIds::Overtaken& each) {
-    return each.id == id && endings_of(writing).interrupted(each.since, kAnybody);
+    return each.id == id && record_of(writing).interrupted(each.since, kAnybody);
   });
 }
 
@@ -42,7 +42,7 @@ void note_id(std::uint16_t id, bool acts, CommandIds& ids, const Writing& writin
   }
   if (writing.own.id && *writing.own.id != id) forget(*writing.own.id);  // its program has gone on
   if (acts) forget(id);
-  if (differs) ids.since = endings_of(writing).now();
+  if (differs) ids.since = record_of(writing).now();
   ids.last = id;
   ids.last_at = writing.now;
 }
@@ -56,13 +56,13 @@ void note_id(std::uint16_t id, bool acts, CommandIds& ids, const Writing& writin
 /// told.
 Verdict EdgeMemory::judge_single(const Item& item, const Kind& kind, const Writing& writing) {
   const bool rearmed = item.at == kLongAgo || writing.now - item.at >= writing.rearm;
-  const Endings& endings = endings_of(writing);
-  const Endings::Point since = item.acted.value_or(0);
-  const bool interrupted = item.acted && endings.interrupted(since, writing.client);
+  const AxisRecord& record = record_of(writing);
+  const AxisRecord::Point since = item.acted.value_or(0);
+  const bool interrupted = item.acted && record.interrupted(since, writing.client);
   // A stop too many is the smaller harm: a scanner's block may carry the same word all the time.
   if ((rearmed && !interrupted) || kind.unserved || kind.stop_word) return Verdict::acts;
   const bool changed = item.targets != writing.targets;
-  const bool over = !item.acted || endings.ended(since, writing.client);
+  const bool over = !item.acted || record.ended(since, writing.client);
   return kind.relative || ((changed || over) && !kind.is_so) ? Verdict::not_new : Verdict::nothing;
 }
 
@@ -98,7 +98,7 @@ Verdict EdgeMemory::conclude(Item& item, std::uint16_t value, Verdict verdict, c
   remember(item, value, writing);
   if (fresh || verdict == Verdict::acts) item.targets = writing.targets;
   if (verdict != Verdict::acts) return verdict;
-  item.acted = endings_of(writing).now();
+  item.acted = record_of(writing).now();
   item.answered_not_new = false;
   return verdict;
 }

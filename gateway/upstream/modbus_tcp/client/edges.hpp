@@ -13,8 +13,8 @@
 #include <optional>
 
 #include "gateway/core/clock.hpp"
+#include "gateway/image/axis_record.hpp"
 #include "gateway/image/command.hpp"
-#include "gateway/image/endings.hpp"
 #include "gateway/image/register_map.hpp"
 
 namespace axisgate::modbus_tcp {
@@ -43,13 +43,13 @@ struct Writing {
   std::uint64_t request = 0;  ///< its number among the client's, from 1: two may come in one instant
   Duration rearm;             ///< listener option rearm_ms
   ClientId client = 0;
-  LastWords own{};                   ///< of the connection that writes, before this write
-  Instant connected_at = kLongAgo;   ///< the same connection
-  const Endings* endings = nullptr;  ///< of the axis; none: nothing has ever ended
-  bool enabled = false;              ///< coil 0 reads 1, and no stop is latched: an enable has nothing to do
-  bool runs_velocity = false;        ///< coil 7 reads 1
-  bool owns = false;                 ///< this client owns the axis: a release has something to give back
-  bool needs_zero = false;           ///< stop-latched or faulted: coil 0 = 1 acts only after a 0
+  LastWords own{};                     ///< of the connection that writes, before this write
+  Instant connected_at = kLongAgo;     ///< the same connection
+  const AxisRecord* record = nullptr;  ///< of the axis; none: nothing has ever ended
+  bool enabled = false;                ///< coil 0 reads 1, and no stop is latched: an enable has nothing to do
+  bool runs_velocity = false;          ///< coil 7 reads 1
+  bool owns = false;                   ///< this client owns the axis: a release has something to give back
+  bool needs_zero = false;             ///< stop-latched or faulted: coil 0 = 1 acts only after a 0
   /// RowMemory's count of changes of what the item goes by.
   std::uint64_t targets = 0;
 };
@@ -65,12 +65,12 @@ struct CommandIds {
   std::optional<std::uint16_t> last;  ///< the last that was not 0
   std::optional<std::uint16_t> seen;  ///< the last that acted, or came with command 0: register 30
   Instant last_at = kLongAgo;         ///< when `last` was written last
-  Endings::Point since = 0;           ///< of the axis, when it became the last one
+  AxisRecord::Point since = 0;        ///< of the axis, when it became the last one
   /// What another program of the address has written over. A successor of a connection comes after all that this has
   /// written, so a connection that was there before is another program's.
   struct Overtaken {
     std::uint16_t id = 0;
-    Endings::Point since = 0;
+    AxisRecord::Point since = 0;
   };
   static constexpr std::size_t kMaxOvertaken = 4;  ///< the oldest is forgotten
   boost::container::static_vector<Overtaken, kMaxOvertaken> overtaken{};
@@ -140,14 +140,14 @@ class EdgeMemory {
   struct Item {
     bool written = false;  ///< false: the memory is empty
     std::uint16_t value = 0;
-    Instant at = kLongAgo;                ///< written last
-    std::uint64_t request = 0;            ///< that wrote it last
-    std::uint64_t since = 0;              ///< the request that first wrote this value
-    bool done = false;                    ///< what `request` asked by it was carried out
-    std::optional<Endings::Point> acted;  ///< when it acted last with this value
-    std::uint64_t targets = 0;            ///< Writing::targets then
-    bool answered_not_new = false;        ///< its client was answered once that it is not new
-    bool disowned = false;                ///< a 1 that another client's ownership has refused
+    Instant at = kLongAgo;                   ///< written last
+    std::uint64_t request = 0;               ///< that wrote it last
+    std::uint64_t since = 0;                 ///< the request that first wrote this value
+    bool done = false;                       ///< what `request` asked by it was carried out
+    std::optional<AxisRecord::Point> acted;  ///< when it acted last with this value
+    std::uint64_t targets = 0;               ///< Writing::targets then
+    bool answered_not_new = false;           ///< its client was answered once that it is not new
+    bool disowned = false;                   ///< a 1 that another client's ownership has refused
     [[nodiscard]] bool is_on() const { return written && value != 0; }
   };
   /// What kind of item it is, as far as the rules differ.

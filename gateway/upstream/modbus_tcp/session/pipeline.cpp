@@ -72,7 +72,7 @@ void Pipeline::accept(const Frame& frame, Instant now, Instant came) {
     entry.stage = is_carried_out(*request) ? Stage::waiting : Stage::at_turn;
     entry.request = *request;
     entry.axis = axis_of(*request, *view);
-    if (const AxisImage* const axis = context_.image.find(entry.axis)) entry.endings = axis->endings.now();
+    if (const AxisImage* const axis = context_.image.find(entry.axis)) entry.point = axis->record.now();
   }
   const bool is_write = writes || (request == nullptr && is_write_function(frame.pdu[0]));
   if (context_.settings.staged_halves && is_write) stage_half(entry, now);
@@ -162,7 +162,7 @@ void Pipeline::drop_waiting_before(std::size_t stop) {
 Errc Pipeline::too_late(const Entry& entry, Instant now) const {
   constexpr ClientId kAnybody = ~ClientId{0};
   const AxisImage* const axis = context_.image.find(entry.axis);
-  if (entry.writes() && axis != nullptr && axis->endings.interrupted(entry.endings, kAnybody))
+  if (entry.writes() && axis != nullptr && axis->record.interrupted(entry.point, kAnybody))
     return Errc::dropped_by_stop;
   return now - entry.came >= context_.settings.start_deadline ? Errc::never_started : Errc::ok;
 }

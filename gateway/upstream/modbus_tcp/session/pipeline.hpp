@@ -53,8 +53,8 @@ class Pipeline {
     std::uint64_t number = 0;
     Instant arrived;
     Instant came;
-    AxisNumber axis = 0;         ///< that it is carried out on; 0: none
-    Endings::Point endings = 0;  ///< of that axis, when it arrived
+    AxisNumber axis = 0;          ///< that it is carried out on; 0: none
+    AxisRecord::Point point = 0;  ///< of that axis's record, when it arrived
     bool waited = false;
     std::uint16_t transaction = 0;
     std::uint8_t unit = 0;

@@ -61,7 +61,7 @@ Writing writing_to(const AxisImage& axis, const Onlooker& onlooker, WriteForm fo
   writing.client = onlooker.client.id;
   writing.own = last_words(onlooker, axis.number);
   writing.connected_at = onlooker.words->connected_at;
-  writing.endings = &axis.endings;
+  writing.record = &axis.record;
   writing.enabled = (shown_level_coils(axis) & kEnabled) != 0 && !axis.has(AxisInput::stop_latched);
   writing.runs_velocity = (shown_level_coils(axis) & kRunsVelocity) != 0;
   writing.owns = axis.lease.owned_by(onlooker.client.id);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/drive/plan/way_out.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "gateway/drive/plan/planner.hpp"
+
+namespace axisgate::drive {
+namespace {
+
+// A step of the profile writes exactly this.
+bool has_write(const model::Steps& steps, model::ObjectId object, std::int64_t number) {
+  return std::any_of(steps.begin(), steps.end(), [&](const model::Step& step) {
+    return step.verb == model::Step::Verb::write && step.source == model::Step::Source::literal &&
+           step.object == object && step.literal == number;
+  });
+}
+
+bool writes(const AxisCore& core, Command command, model::ObjectId object, std::int64_t number) {
+  const auto& def = core.model.command(command);
+  if (!def) return false;
+  return has_write(def->steps, object, number) ||
+         std::any_of(def->variants.begin(), def->variants.end(), [&](const model::CommandDef::Variant& variant) {
+           return has_write(variant.steps, object, number);
+         });
+}
+
+// What a stop or a fault_reset of this drive writes too is no start: two commands may begin alike.
+bool is_harmless(const AxisCore& core, model::ObjectId object, std::int64_t number) {
+  return std::ranges::any_of(std::array{Command::disable, Command::quick_stop, Command::halt, Command::fault_reset},
+                             [&](Command command) { return writes(core, command, object, number); });
+}
+
+// The set-point that this object is; none.
+std::optional<Quantity> target_of(const AxisCore& core, model::ObjectId object) {
+  for (const Quantity target : {Quantity::target_position, Quantity::target_velocity, Quantity::target_torque})
+    if (core.object_of(target) != model::kNoObject && same_place(core, core.object_of(target), object)) return target;
+  return std::nullopt;
+}
+
+// A set-point moves what is enabled where the drive follows it, or where the write itself is the start.
+bool moves_as_target(const AxisCore& core, model::ObjectId object, std::int64_t number) {
+  const auto target = target_of(core, object);
+  const AxisFacts facts = core.facts();
+  if (!target || !facts.enabled()) return false;
+  const bool acts = followed_target(facts) == target || moves_by_write(core, object);
+  return acts && (target == Quantity::target_position || number != 0);
+}
+
+}  // namespace
+
+Reach reach_of(const AxisCore& core, model::ObjectId object, std::int64_t number) {
+  if (is_enabling_word(core, object, number)) return Reach::enables;
+  if (moves_as_target(core, object, number)) return Reach::moves;
+  if (!core.is_virtual() || is_harmless(core, object, number)) return Reach::nothing;
+  if (writes(core, Command::enable, object, number)) return Reach::enables;
+  for (std::size_t i = 0; i <= kLastCommand; ++i)
+    if (const auto command = static_cast<Command>(i);
+        starts_motion(command) && core.object(object).trigger && writes(core, command, object, number))
+      return Reach::moves;
+  return Reach::nothing;
+}
+
+Errc held_on_way_out(const AxisCore& core, model::ObjectId object, std::int64_t number, const Sender& sender) {
+  const Reach reach = reach_of(core, object, number);
+  if (reach == Reach::nothing) return Errc::ok;
+  const AxisFacts facts = core.facts();
+  const bool keeps_enabled = facts.enabled() && facts.commanded;
+  if (sender.keeps) {
+    const ObjectState& held = core.store[object];
+    return keeps_enabled && held.known && held.number == number ? Errc::ok : Errc::state_unsuitable;
+  }
+  if (!sender.asked) return Errc::state_unsuitable;
+  // A word that halts holds the torque and never gives it. A target of a stop is the place where it was asked for.
+  if (sender.stops) return reach == Reach::moves || keeps_enabled ? Errc::ok : Errc::state_unsuitable;
+  if (core.motion.record().stopped_since(*sender.asked)) return Errc::dropped_by_stop;
+  if (sender.begins) return Errc::ok;
+  if (reach == Reach::enables) return keeps_enabled ? Errc::ok : Errc::state_unsuitable;
+  // A new speed acts on the run that is on: by itself, or by the run's start once more (CommandDef::repeat_on_change).
+  const auto target = target_of(core, object);
+  return core.motion.target_acts_now(target.value_or(Quantity::target_velocity), facts, false) ? Errc::ok
+                                                                                               : Errc::state_unsuitable;
+}
+
+}  // namespace axisgate::drive

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way out of one axis: every write that is about to leave is judged once more by what it could do to the motor, by
+// its profile and by what the drive shows, not by who has planned it. Pure. Promises that nothing which enables or
+// moves leaves after a newer stop, without having been asked for, or as a stop of an axis that has no torque. Never
+// changes a write: it passes or does not.
+#pragma once
+
+#include <optional>
+
+#include "gateway/drive/state/axis_core.hpp"
+
+namespace axisgate::drive {
+
+/// What a write could do to the motor, from the least to the most.
+enum class Reach : std::uint8_t { nothing, enables, moves };
+[[nodiscard]] Reach reach_of(const AxisCore& core, model::ObjectId object, std::int64_t number);
+
+/// Who sends it.
+struct Sender {
+  /// The point up to which its write batch knows of stops; none: the gateway itself (bring-up, keep-alive, end).
+  std::optional<AxisRecord::Point> asked{};
+  bool stops = false;   ///< a stop under way
+  bool begins = false;  ///< its client has asked for an enable or a start
+  bool keeps = false;   ///< the keep-alive: what the drive was last known to take
+};
+
+/// Errc::ok: it passes. dropped_by_stop: a stop is newer. state_unsuitable: nobody has asked for what it would do.
+[[nodiscard]] Errc held_on_way_out(const AxisCore& core, model::ObjectId object, std::int64_t number,
+                                   const Sender& sender);
+
+}  // namespace axisgate::drive
