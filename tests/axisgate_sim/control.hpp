@@ -42,6 +42,7 @@ class Control {
 };
 
 // What a drive of its kind alone can do. Nothing: it is no such command.
+std::optional<std::string> ask_cia402(Cia402Drive& drive, const ControlWords& words);
 std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words);
 std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words);
 std::optional<std::string> ask_keya(KeyaDrive& drive, const ControlWords& words, Time now);

@@ -16,15 +16,6 @@ std::string in_decimal_and_hex(CanView bytes) {
 
 std::optional<std::string> ask_leadshine(LeadshineDrive& drive, const ControlWords& words) {
   const std::string& command = words[0];
-  if (command == "state") return " " + std::string(drive.booting() ? "booting" : name_of(drive.state()));
-  if (command == "position") return " " + std::to_string(drive.position());
-  if (command == "stores") return " " + std::to_string(drive.stores());
-  if (command == "restarts") return " " + std::to_string(drive.restarts());
-  if (command == "transitions") return transitions_text(drive.transitions());
-  if (command == "writes") {
-    need_words(words, 3, "writes LINE/NODE INDEX.SUB");
-    return " " + std::to_string(drive.writes(object_in(words[2])));
-  }
   if (command == "fault") {
     need_words(words, 3, "fault LINE/NODE CODE, the value of 603F");
     drive.inject_fault(static_cast<std::uint16_t>(number_in(words[2])));
@@ -35,24 +26,7 @@ std::optional<std::string> ask_leadshine(LeadshineDrive& drive, const ControlWor
     drive.clear_fault_cause();
     return "";
   }
-  if (command == "input") {
-    need_words(words, 4, "input LINE/NODE NUMBER on|off");
-    const std::int64_t input = number_in(words[2]);
-    if (input < 1 || input > LeadshineDrive::input_count) refuse_word("this drive has no input " + words[2]);
-    drive.set_input(static_cast<int>(input), on_or_off(words[3]));
-    return "";
-  }
-  if (command == "jam") {
-    need_words(words, 3, "jam LINE/NODE on|off");
-    drive.jam(on_or_off(words[2]));
-    return "";
-  }
-  if (command == "ignore-quick-stop") {
-    need_words(words, 3, "ignore-quick-stop LINE/NODE on|off");
-    drive.ignore_quick_stop(on_or_off(words[2]));
-    return "";
-  }
-  return std::nullopt;
+  return ask_cia402(drive, words);
 }
 
 // Of one object alone, where one is named.

@@ -50,12 +50,29 @@ int input_in(const std::string& text, int inputs) {
   return static_cast<int>(input);
 }
 
-std::optional<std::string> tell(const KincoDrive& drive, const ControlWords& words) {
+// What all of them have.
+template <class Drive>
+std::optional<std::string> ask_one_motor(Drive& drive, int inputs, const ControlWords& words) {
+  const std::string& command = words[0];
+  if (command == "position") return " " + std::to_string(drive.position());
+  if (command == "restarts") return " " + std::to_string(drive.restarts());
+  if (command == "input") {
+    need_words(words, 4, "input LINE/STATION NUMBER on|off");
+    drive.set_input(input_in(words[2], inputs), on_or_off(words[3]));
+    return "";
+  }
+  if (command == "jam") {
+    need_words(words, 3, "jam LINE/STATION on|off");
+    drive.jam(on_or_off(words[2]));
+    return "";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> tell(const Cia402Drive& drive, const ControlWords& words) {
   const std::string& command = words[0];
   if (command == "state") return " " + std::string(drive.booting() ? "booting" : name_of(drive.state()));
-  if (command == "position") return " " + std::to_string(drive.position());
   if (command == "stores") return " " + std::to_string(drive.stores());
-  if (command == "restarts") return " " + std::to_string(drive.restarts());
   if (command == "transitions") return transitions_text(drive.transitions());
   if (command == "get") {
     need_words(words, 3, "get LINE/STATION INDEX.SUB");
@@ -70,7 +87,7 @@ std::optional<std::string> tell(const KincoDrive& drive, const ControlWords& wor
   return std::nullopt;
 }
 
-std::optional<std::string> change(KincoDrive& drive, const ControlWords& words) {
+std::optional<std::string> change(Cia402Drive& drive, const ControlWords& words) {
   const std::string& command = words[0];
   if (command == "set") {
     need_words(words, 4, "set LINE/STATION INDEX.SUB VALUE");
@@ -78,26 +95,6 @@ std::optional<std::string> change(KincoDrive& drive, const ControlWords& words) 
     if (refusal != Refusal::none) {
       refuse_word("the drive refuses " + words[2] + " with " + in_hex(static_cast<int>(refusal)));
     }
-    return "";
-  }
-  if (command == "fault") {
-    need_words(words, 4, "fault LINE/STATION 2601|2602 BITS");
-    drive.inject_fault(error_word_in(words[2]), static_cast<std::uint16_t>(number_in(words[3])));
-    return "";
-  }
-  if (command == "clear") {
-    need_words(words, 4, "clear LINE/STATION, or clear LINE/STATION 2601|2602 BITS");
-    drive.clear_fault_cause(error_word_in(words[2]), static_cast<std::uint16_t>(number_in(words[3])));
-    return "";
-  }
-  if (command == "input") {
-    need_words(words, 4, "input LINE/STATION NUMBER on|off");
-    drive.set_input(input_in(words[2], drive.model().digital_inputs), on_or_off(words[3]));
-    return "";
-  }
-  if (command == "jam") {
-    need_words(words, 3, "jam LINE/STATION on|off");
-    drive.jam(on_or_off(words[2]));
     return "";
   }
   if (command == "ignore-quick-stop") {
@@ -111,9 +108,7 @@ std::optional<std::string> change(KincoDrive& drive, const ControlWords& words) 
 std::optional<std::string> tell(const Id286pro& drive, const ControlWords& words) {
   const std::string& command = words[0];
   if (command == "state") return state(drive);
-  if (command == "position") return " " + std::to_string(drive.position());
   if (command == "eeprom") return eeprom(drive.registers());
-  if (command == "restarts") return " " + std::to_string(drive.restarts());
   if (command == "starts") return starts(drive);
   if (command == "get") {
     need_words(words, 3, "get LINE/UNIT REGISTER");
@@ -150,19 +145,9 @@ std::optional<std::string> change(Id286pro& drive, const ControlWords& words) {
     drive.clear_fault_cause();
     return "";
   }
-  if (command == "input") {
-    need_words(words, 4, "input LINE/UNIT NUMBER on|off");
-    drive.set_input(input_in(words[2], Id286proInputs::count), on_or_off(words[3]));
-    return "";
-  }
   if (command == "enable") {
     need_words(words, 3, "enable LINE/UNIT on|off");
     drive.set_enable_switch(on_or_off(words[2]));
-    return "";
-  }
-  if (command == "jam") {
-    need_words(words, 3, "jam LINE/UNIT on|off");
-    drive.jam(on_or_off(words[2]));
     return "";
   }
   return std::nullopt;
@@ -178,12 +163,29 @@ std::string transitions_text(const std::deque<Transition>& log) {
   return text.str();
 }
 
-std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words) {
+std::optional<std::string> ask_cia402(Cia402Drive& drive, const ControlWords& words) {
+  if (auto told = ask_one_motor(drive, drive.input_count(), words)) return told;
   const auto told = tell(drive, words);
   return told ? told : change(drive, words);
 }
 
+std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words) {
+  const std::string& command = words[0];
+  if (command == "fault") {
+    need_words(words, 4, "fault LINE/STATION 2601|2602 BITS");
+    drive.inject_fault(error_word_in(words[2]), static_cast<std::uint16_t>(number_in(words[3])));
+    return "";
+  }
+  if (command == "clear") {
+    need_words(words, 4, "clear LINE/STATION, or clear LINE/STATION 2601|2602 BITS");
+    drive.clear_fault_cause(error_word_in(words[2]), static_cast<std::uint16_t>(number_in(words[3])));
+    return "";
+  }
+  return ask_cia402(drive, words);
+}
+
 std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words) {
+  if (auto told = ask_one_motor(drive, Id286proInputs::count, words)) return told;
   const auto told = tell(drive, words);
   return told ? told : change(drive, words);
 }

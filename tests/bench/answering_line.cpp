@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/answering_line.hpp"
 
+#include "tests/bench/rtu_requests.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/kinco_drive.hpp"
 #include "tests/simulated/kinco_rtu.hpp"
@@ -47,7 +48,6 @@ class KincoLine final : public AnsweringLine {
   simulated::FrameReceiver receiver_;
 };
 
-/// Tells a frame's end by its length: a real drive waits for the silence, which would be time of its own.
 class RtuLine final : public AnsweringLine {
  public:
   RtuLine(int drives, Time now) {
@@ -58,27 +58,13 @@ class RtuLine final : public AnsweringLine {
   }
 
   std::optional<Answer> hear(std::span<const std::uint8_t> bytes, std::uint8_t mute, Time now) override {
-    if (now - last_ > kLongestPause) frame_.clear();
-    last_ = now;
     std::optional<Answer> answer;
-    for (const std::uint8_t byte : bytes) {
-      frame_.push_back(byte);
-      if (frame_.size() < kHead || frame_.size() < whole()) continue;
-      const auto request = simulated::open_rtu(frame_);
-      frame_.clear();
-      if (request) answer = answer_to(*request, mute, now);
-    }
+    for (const std::uint8_t byte : bytes)
+      if (const auto request = requests_.take(byte, now)) answer = answer_to(*request, mute, now);
     return answer;
   }
 
  private:
-  static constexpr Time kLongestPause = std::chrono::milliseconds(20);
-  static constexpr std::size_t kHead = 7;  // up to the byte count of a write of several registers
-
-  [[nodiscard]] std::size_t whole() const {
-    return frame_[1] == simulated::function::write_several ? kHead + frame_[6] + 2U : 8U;
-  }
-
   std::optional<Answer> answer_to(const simulated::RtuFrame& request, std::uint8_t mute, Time now) {
     for (const auto& drive : drives_) {
       if (drive->unit() != request.unit || drive->unit() == mute) continue;
@@ -90,8 +76,7 @@ class RtuLine final : public AnsweringLine {
   }
 
   std::vector<std::unique_ptr<simulated::KincoRtu>> drives_;
-  simulated::RtuBytes frame_;
-  Time last_{};
+  RtuRequests requests_;
 };
 
 }  // namespace

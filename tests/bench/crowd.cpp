@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A thousand clients of which a fifth is slow, and connections made as fast as the machine goes.
 #include <fmt/format.h>
-#include <sys/epoll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <boost/asio/io_context.hpp>
 #include <cerrno>
-#include <optional>
-#include <stdexcept>
 
 #include "tests/bench/benches.hpp"
 #include "tests/bench/closed_loop_clients.hpp"
-#include "tests/bench/modbus_client.hpp"
 #include "tests/bench/process.hpp"
 #include "tests/bench/servers.hpp"
 
@@ -30,9 +23,9 @@ constexpr milliseconds kPeriod(100);
 
 /// One of a thousand. Of the slow ones every other says a byte at a time, and the rest never read.
 struct One {
-  ModbusClient connection;
+  AskingClient client;
   Clock::time_point due{}, asked{};
-  std::size_t received = 0, said = 0;
+  std::size_t said = 0;
   bool waits = false, gone = false;
 };
 
@@ -42,45 +35,22 @@ bool drips(std::size_t index) { return slow(index) && index / (kClients / kSlow)
 /// What a slow client says; one that the server has cut stays away.
 void say_slowly(One& one, std::size_t index, Bytes request) {
   const Bytes part = drips(index) ? request.subspan(one.said++ % request.size(), 1) : request;
-  if (::send(one.connection.socket(), part.data(), part.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0 && errno != EAGAIN)
+  if (::send(one.client.connection.socket(), part.data(), part.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0 &&
+      errno != EAGAIN)
     one.gone = true;
-}
-
-void ask(One& one, Bytes request, Clock::time_point now) {
-  if (::send(one.connection.socket(), request.data(), request.size(), MSG_NOSIGNAL) != std::ssize(request))
-    throw std::runtime_error("a client that is not slow cannot ask");
-  one.waits = true;
-  one.asked = now;
-}
-
-/// The time of a whole reply.
-std::optional<double> take(One& one, std::size_t reply_size) {
-  std::array<Byte, 512> part;
-  const ssize_t got = ::recv(one.connection.socket(), part.data(), part.size(), MSG_DONTWAIT);
-  if (got == 0) throw std::runtime_error("the server closed a connection that was not slow");
-  one.received += static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-  if (!one.waits || one.received < reply_size) return {};
-  one.received = 0;
-  one.waits = false;
-  return std::chrono::duration<double, std::micro>(Clock::now() - one.asked).count();
 }
 
 /// From request to whole reply in microseconds, of all that are not slow.
 Samples latencies(std::uint16_t port, const ReadRequest& request, milliseconds lasting) {
-  const int ready_set = ::epoll_create1(EPOLL_CLOEXEC);
+  EpollSet ready_set;
   std::vector<One> clients;
   clients.reserve(kClients);
   const Clock::time_point begun = Clock::now() + kPeriod;
   for (std::size_t i = 0; i < kClients; ++i) {
-    clients.push_back({ModbusClient(port)});
-    clients.back().due = begun + kPeriod * i / kClients;
-    epoll_event event{};
-    event.events = EPOLLIN;
-    event.data.u64 = i;
-    if (!slow(i)) ::epoll_ctl(ready_set, EPOLL_CTL_ADD, clients.back().connection.socket(), &event);
+    clients.push_back({.client = {ModbusClient(port)}, .due = begun + kPeriod * i / kClients});
+    if (!slow(i)) ready_set.add(clients.back().client.connection, static_cast<std::uint32_t>(i));
   }
   Samples out;
-  std::array<epoll_event, 256> events{};
   std::size_t next = 0;  // they are due in the order of their making
   while (Clock::now() < begun + lasting) {
     const Clock::time_point now = Clock::now();
@@ -90,15 +60,18 @@ Samples latencies(std::uint16_t port, const ReadRequest& request, milliseconds l
       if (slow(next)) {
         if (!one.gone) say_slowly(one, next, request.bytes);
       } else if (!one.waits) {
-        ask(one, request.bytes, now);
+        one.client.ask(request.bytes);
+        one.waits = true;
+        one.asked = now;
       }
     }
-    const int ready = ::epoll_wait(ready_set, events.data(), static_cast<int>(events.size()), 0);
-    for (int i = 0; i < ready; ++i)
-      if (const auto took = take(clients[events.at(static_cast<std::size_t>(i)).data.u64], request.reply_size))
-        out.push_back(*took);
+    for (const epoll_event& event : ready_set.wait({})) {
+      One& one = clients[event.data.u32];
+      if (!one.client.take(request.reply_size)) continue;
+      one.waits = false;
+      out.push_back(std::chrono::duration<double, std::micro>(Clock::now() - one.asked).count());
+    }
   }
-  ::close(ready_set);
   return out;
 }
 

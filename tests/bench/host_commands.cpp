@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tests/bench/lawicel_lines.hpp"
+#include "tests/bench/rtu_requests.hpp"
 #include "tests/simulated/frame_receiver.hpp"
 #include "tests/simulated/keya_frame.hpp"
 #include "tests/simulated/lawicel_text.hpp"
-#include "tests/simulated/rtu_frame.hpp"
 
 namespace axisgate::bench {
 namespace {
@@ -43,12 +43,7 @@ class KincoCommands final : public HostCommands {
 class Id286proCommands final : public HostCommands {
  public:
   std::optional<HostCommand> take(std::uint8_t byte, Time now) override {
-    if (now - last_ > kLongestPause) frame_.clear();
-    last_ = now;
-    frame_.push_back(byte);
-    if (frame_.size() < kHead || frame_.size() < whole()) return std::nullopt;
-    const auto frame = simulated::open_rtu(frame_);
-    frame_.clear();
+    const auto frame = requests_.take(byte, now);
     if (!frame || frame->pdu[0] == simulated::function::read) return std::nullopt;
     const auto request = simulated::register_request(frame->pdu);
     if (!request || request->start != kControl || request->values.empty()) return std::nullopt;
@@ -57,16 +52,8 @@ class Id286proCommands final : public HostCommands {
   }
 
  private:
-  static constexpr Time kLongestPause = std::chrono::milliseconds(20);
-  static constexpr std::size_t kHead = 7;  // up to the byte count of a write of several registers
   static constexpr std::uint16_t kControl = 323, kSlowDown = 6, kEmergencyStop = 7;
-
-  [[nodiscard]] std::size_t whole() const {
-    return frame_[1] == simulated::function::write_several ? kHead + frame_[6] + 2U : 8U;
-  }
-
-  simulated::RtuBytes frame_;
-  Time last_{};
+  RtuRequests requests_;
 };
 
 class KeyaSerialCommands final : public HostCommands {

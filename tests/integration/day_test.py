@@ -24,8 +24,10 @@ class Day(Machine):
         self.operator = self.peer()
 
     def axes(self, *commands):
-        """Those that know these commands, with ramps."""
+        """Those that know these commands, with ramps. Of the two motors of a Keya the first: they are alike."""
         for number in self.each():
+            if self.motors[number][1] == "B":
+                continue
             axis = Axis(self.operator, number)
             if all(axis.get("supported_commands") >> COMMANDS[name] & 1 for name in commands):
                 self.prepare(axis)

@@ -12,7 +12,7 @@ RANKS = [{"from": PLC, "role": "operator", "rank": 3}, {"from": SECOND, "role": 
 
 
 class Company(PlcStory):
-    lines_of = ("serial", "stepper", "leadshine", "mdcan")
+    lines_of = ("serial", "leadshine")
     allow = RANKS
 
     def setUp(self):

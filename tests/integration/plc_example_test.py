@@ -122,10 +122,10 @@ class WithoutBlocks(Controller):
         return self.program.Stage == 3 and image[33] == self.program.MotionId and image[32] == 1
 
 
-class OfATable(PlcStory):
+class TableWithBlocks(PlcStory):
     lines_of = ("serial",)
     axis_options = {"units_per_rev": 5000, "homing_method": 35}
-    controller = None
+    controller = WithBlocks
 
     def setUp(self):
         super().setUp()
@@ -136,13 +136,16 @@ class OfATable(PlcStory):
 
     # What a person does and sees.
 
+    def until_reached(self, place):
+        self.until(f"it is on its way to place {place}", lambda: self.table.Place == place and self.plc.is_under_way())
+        self.until(f"place {place} is reached", lambda: self.table.Place != place)
+        # The next command is still in the image, and the motor stands.
+        self.assertAlmostEqual(self.position(1) / COUNTS_PER_MM, PLACES[place - 1], delta=0.05)
+
     def until_round(self):
         """Each position is reached, one after the other: the motor turns round there."""
-        for place, position in enumerate(PLACES, 1):
-            self.until(f"it is on its way to place {place}", lambda place=place: self.table.Place == place and self.plc.is_under_way())
-            self.until(f"place {place} is reached", lambda place=place: self.table.Place != place)
-            # The next command is still in the image, and the motor stands.
-            self.assertAlmostEqual(self.position(1) / COUNTS_PER_MM, position, delta=0.05)
+        for place in (1, 2, 3):
+            self.until_reached(place)
 
     def set_out(self):
         """Homed, and on its way to the third place, which is the farthest."""
@@ -169,9 +172,10 @@ class OfATable(PlcStory):
         self.assertEqual([MAKES_IT_GO[asked] for asked in self.plc.commands[since:] if asked in MAKES_IT_GO], [], self.plc.commands)
 
     def goes_on_by(self, act):
-        """What a person does now makes it go on, through all its positions."""
+        """What a person does now makes it go on to the position that is next."""
         act()
-        self.until_round()
+        self.until("it is on its way", self.plc.is_under_way)
+        self.until_reached(self.table.Place)
         self.until_switched_off()
 
     def turn_on_anew(self):
@@ -180,7 +184,7 @@ class OfATable(PlcStory):
 
     # The stories.
 
-    def three_positions_a_stop_and_a_reset(self):
+    def test_three_positions_a_stop_and_a_reset(self):
         table = self.table
         table.SwitchedOn = True
         self.until_round()
@@ -206,7 +210,7 @@ class OfATable(PlcStory):
         self.assert_rests(since)
         self.goes_on_by(self.press_reset)
 
-    def the_network_cable_is_out_while_the_lease_lives(self):
+    def test_a_lost_connection_starts_nothing_when_it_is_back(self):
         for act in (self.press_reset, self.turn_on_anew):
             self.set_out()
             since = len(self.plc.commands)
@@ -218,7 +222,7 @@ class OfATable(PlcStory):
             self.assert_rests(since)
             self.goes_on_by(act)
 
-    def a_drive_is_out_of_sight(self):
+    def test_a_drive_out_of_sight_starts_nothing_when_it_is_back(self):
         self.set_out()
         since = len(self.plc.commands)
         self.sim.ask("unplug serial")
@@ -229,7 +233,7 @@ class OfATable(PlcStory):
         self.assert_rests(since)
         self.goes_on_by(self.press_reset)
 
-    def a_drive_is_started_anew(self):
+    def test_a_drive_that_was_started_anew_is_homed_before_it_moves(self):
         """Where it stands is its zero then: a program that went on to its next place would go to a wrong one."""
         self.set_out()
         since = len(self.plc.commands)
@@ -242,7 +246,7 @@ class OfATable(PlcStory):
         self.assertEqual([MAKES_IT_GO[asked] for asked in self.plc.commands[since:] if asked in MAKES_IT_GO][:3],
                          ["enable", "home", "move_absolute"], self.plc.commands)
 
-    def another_client_stops_it(self):
+    def test_what_another_client_has_stopped_is_not_begun_again(self):
         panel = self.peer("127.0.0.2").axis(1)
         for how in ("halt", "quick_stop", "disable"):
             self.set_out()
@@ -251,7 +255,7 @@ class OfATable(PlcStory):
             self.assert_rests(since)
             self.goes_on_by(self.press_reset)
 
-    def a_cold_start_with_the_switch_on(self):
+    def test_a_start_of_the_controller_starts_nothing(self):
         self.set_out()
         self.plc.without_power()
         self.plc = self.controller(self)
@@ -260,7 +264,7 @@ class OfATable(PlcStory):
         self.assert_rests(0)
         self.goes_on_by(self.turn_on_anew)
 
-    def a_start_with_retained_variables(self):
+    def test_a_start_with_retained_variables_starts_nothing(self):
         """The switch was turned on while the controller had no power."""
         self.set_out()
         self.until_switched_off()
@@ -271,7 +275,7 @@ class OfATable(PlcStory):
         self.assert_rests(since)
         self.goes_on_by(self.press_reset)
 
-    def its_stop_button_stops_what_another_client_moves(self):
+    def test_its_stop_button_stops_what_another_client_moves_and_nothing_follows(self):
         panel = self.peer("127.0.0.2").axis(1)
         panel.set(profile_velocity=300000, target_position=50000000)
         panel.command("enable")
@@ -288,6 +292,13 @@ class OfATable(PlcStory):
         self.assert_rests(0)
 
 
+class TableWithoutBlocks(TableWithBlocks):
+    controller = WithoutBlocks
+
+    def test_three_positions_a_stop_and_a_reset(self):  # a class is run where it has a test of its own; the others are inherited
+        super().test_three_positions_a_stop_and_a_reset()
+
+
 class PrintedConfiguration(Story):
     def test_it_is_valid_and_fits_the_program(self):
         _, page = text_of("docs/plc.md")
@@ -298,44 +309,9 @@ class PrintedConfiguration(Story):
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
         made = json.loads(text)
         axis = made["buses"][0]["drives"][0]["axes"][0]
-        self.assertEqual({key: axis[key] for key in OfATable.axis_options}, OfATable.axis_options)
-        self.assertEqual({key: made["modbus_tcp"][0][key] for key in OfATable.listener_options}, OfATable.listener_options)
+        self.assertEqual({key: axis[key] for key in TableWithBlocks.axis_options}, TableWithBlocks.axis_options)
+        self.assertEqual({key: made["modbus_tcp"][0][key] for key in TableWithBlocks.listener_options}, TableWithBlocks.listener_options)
         self.assertEqual(axis["lease"]["renew"], "heartbeat")
-
-
-class TableWithBlocks(OfATable):
-    controller = WithBlocks
-
-    def test_three_positions_a_stop_and_a_reset(self):
-        self.three_positions_a_stop_and_a_reset()
-
-    def test_a_lost_connection_starts_nothing_when_it_is_back(self):
-        self.the_network_cable_is_out_while_the_lease_lives()
-
-    def test_a_drive_out_of_sight_starts_nothing_when_it_is_back(self):
-        self.a_drive_is_out_of_sight()
-
-    def test_a_drive_that_was_started_anew_is_homed_before_it_moves(self):
-        self.a_drive_is_started_anew()
-
-    def test_what_another_client_has_stopped_is_not_begun_again(self):
-        self.another_client_stops_it()
-
-    def test_a_start_of_the_controller_starts_nothing(self):
-        self.a_cold_start_with_the_switch_on()
-
-    def test_a_start_with_retained_variables_starts_nothing(self):
-        self.a_start_with_retained_variables()
-
-    def test_its_stop_button_stops_what_another_client_moves_and_nothing_follows(self):
-        self.its_stop_button_stops_what_another_client_moves()
-
-
-class TableWithoutBlocks(TableWithBlocks):
-    controller = WithoutBlocks
-
-    def test_three_positions_a_stop_and_a_reset(self):  # a class is run where it has a test of its own; the others are inherited
-        super().test_three_positions_a_stop_and_a_reset()
 
 
 if __name__ == "__main__":

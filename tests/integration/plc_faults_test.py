@@ -8,8 +8,7 @@ SPEED = 5.0 * TURN
 REFUSED_BY_DRIVE, NOT_REACHED = 3, 11
 OVERSPEED = 100.0 * TURN
 # What the drives' makers call an overcurrent, or what else ends all motion, as the simulator takes it.
-TRIPS = {"serial": "2601 0x0020", "modbus": "2601 0x0020", "stepper": "14", "kincocan": "2601 0x0020", "leadshine": "0x2211",
-         "keya232": "0x0040", "keyacanopen": "0x0040", "mdserial": "2601 0x0020", "mdcan": "2601 0x0020"}
+TRIPS = {"mdserial": "2601 0x0020", "stepper": "14", "keyacanopen": "0x0040"}
 
 
 class Trip(PlcStory):
@@ -22,8 +21,7 @@ class Trip(PlcStory):
     def test_a_trip_is_an_error_until_its_cause_is_gone_and_it_is_reset(self):
         self.begin()
         # A Keya's overcurrent is cleared when both of its motors are disabled: its other one stays so.
-        for line in ("keya232", "keyacanopen"):
-            self.numbers.remove(self.number_of(line, "B"))
+        self.numbers.remove(self.number_of("keyacanopen", "B"))
         plc = self.plc()
         plc.enable()
         for number in self.numbers:
@@ -66,7 +64,7 @@ class DriveCable(PlcStory):
     """Between gateway and drive: the PLC's connection goes on."""
 
     # Those that do not trip when they hear nobody: a drive with a fault stands, and a stop of it is over.
-    lines_of = ("serial", "modbus", "stepper", "leadshine", "mdserial", "mdcan")
+    lines_of = ("modbus", "leadshine")
     reply_timeout_ms = 300
 
     def test_what_runs_is_an_error_and_a_stop_is_kept_until_the_drive_is_back(self):

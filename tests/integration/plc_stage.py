@@ -289,9 +289,8 @@ class Plc:
 
 
 class PlcStory(Machine):
-    """A machine with all kinds of drives unless a story has fewer. PLCs go on while a story waits."""
+    """A machine with the drives that a story names. PLCs go on while a story waits."""
 
-    lines_of = ("serial", "modbus", "stepper", "kincocan", "leadshine", "keya232")
     lease = {"timeout_ms": 60000}
     # As the manual recommends it: a scanner that connects again is the client that it was.
     listener_options = {"writes": "posted", "client": "address"}

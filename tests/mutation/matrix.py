@@ -212,8 +212,8 @@ class Matrix:
 
 
 def table(programs, seen, tests, slowest):
-    """A line each: of a program how far it is played; of a TEST its cost, to how many mutants it comes, and those that it notices ("-": it
-    is too slow and was left out)."""
+    """A line each: of a program how far it is played; of a TEST that comes to a mutant its cost, to how many it comes, and those that it
+    notices ("-": it is too slow and was left out)."""
     out = ["# Which test notices which mutant (tests/mutation/README.md), made by tests/mutation/run --matrix and read by tests/mutation/sweep.",
            "#\tcase\tlayer\tseconds\tlines\tcases\tmutants it comes to\tmutants it notices"]
     for name, cases in sorted(programs.items()):
@@ -237,6 +237,8 @@ def table(programs, seen, tests, slowest):
         file = ""
         for case in sorted(rows, key=lambda body: (known.get(body, unknown)[0], body)):
             seconds, count, came, notices, left_out = rows[case]
+            if not came and not notices and not left_out:
+                continue  # nothing is known by it
             path, lines = known.get(case, unknown)
             if path != file:
                 out.append(f"file\t{path}")

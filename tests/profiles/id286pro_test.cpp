@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-json vectors(const std::string& part) { return manual("id286pro").at(part); }
+json id286pro_vectors(const std::string& part) { return manual("id286pro").at(part); }
 
 model::DriveModel id286pro(std::int64_t pulses_per_rev = 10000) {
   ResolveInput input = one_axis("modbus-rtu");
@@ -41,7 +41,7 @@ TEST(Id286pro, EveryRegisterIsWhereAndAsTheManualSays) {
   std::map<std::uint16_t, const Object*> by_register;
   for (const Object& object : loaded.profile.objects)
     by_register[object.places.at("modbus-rtu").address.index] = &object;
-  const json rows = vectors("objects");
+  const json rows = id286pro_vectors("objects");
   EXPECT_EQ(rows.size(), 49U);
   EXPECT_EQ(by_register.size(), rows.size()) << "no register of its own, and none left out";
   for (const json& row : rows) {
@@ -61,7 +61,7 @@ TEST(Id286pro, EveryRegisterIsWhereAndAsTheManualSays) {
 
 TEST(Id286pro, ItsRunsHaveNoHoles) {
   std::set<int> there;
-  for (const json& row : vectors("objects"))
+  for (const json& row : id286pro_vectors("objects"))
     for (int word = 0; word < row["words"].get<int>(); ++word) there.insert(row["address"].get<int>() + word);
   const model::DriveModel model = id286pro();
   EXPECT_EQ(model.rtu.runs.size(), 9U);
@@ -73,7 +73,7 @@ TEST(Id286pro, ItsRunsHaveNoHoles) {
 TEST(Id286pro, ConversionsOfTheManualComeOut) {
   const model::DriveModel model = id286pro();
   int checked = 0;
-  for (const json& row : vectors("conversions")) {
+  for (const json& row : id286pro_vectors("conversions")) {
     const std::string engineering = row["engineering"];
     const auto expect = [&](const std::string& named, Quantity quantity, std::int64_t value) {
       if (engineering != named) return;
@@ -154,7 +154,7 @@ std::vector<std::int64_t> commanded(const model::DriveModel& model, Command comm
 TEST(Id286pro, EachCommandHasItsCodeOfTheManual) {
   const model::DriveModel model = resolved(shipped("id286pro"), one_axis("modbus-rtu"));
   std::map<std::string, std::int64_t> codes;
-  for (const json& row : vectors("commands"))
+  for (const json& row : id286pro_vectors("commands"))
     if (row["register_0323"] == true) codes[row["name"]] = row["code"].get<std::int64_t>();
   const auto code = [&](const std::string& name) { return std::vector<std::int64_t>{codes.at(name)}; };
   EXPECT_EQ(commanded(model, Command::move_absolute), code("absolute move"));

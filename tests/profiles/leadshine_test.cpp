@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-json vectors(const std::string& part) { return manual("leadshine-ld2-can").at(part); }
+json ld2_vectors(const std::string& part) { return manual("leadshine-ld2-can").at(part); }
 
 model::DriveModel leadshine(ResolveInput input = one_axis("canopen")) {
   return resolved(shipped("leadshine-ld2-can"), input);
@@ -58,7 +58,7 @@ TEST(Leadshine, EveryObjectIsWhereAndAsTheManualSays) {
   const LoadedProfile loaded = load_profile(shipped("leadshine-ld2-can"));
   std::map<std::pair<std::int64_t, std::int64_t>, json> rows;
   std::set<std::int64_t> named;  // without any sub-index
-  const json objects = vectors("objects");
+  const json objects = ld2_vectors("objects");
   for (const json& row : objects) {
     if (row["sub"].is_null())
       named.insert(hex(row["index"]));
@@ -84,7 +84,7 @@ TEST(Leadshine, EveryObjectIsWhereAndAsTheManualSays) {
 TEST(Leadshine, NothingIsMappedThatIsPrintedAsNotMappable) {
   const model::DriveModel model = leadshine();
   std::map<std::pair<std::int64_t, std::int64_t>, std::string> pdo;
-  const json objects = vectors("objects");
+  const json objects = ld2_vectors("objects");
   for (const json& row : objects)
     if (row["pdo"].is_string() && row["sub"].is_number())
       pdo[{hex(row["index"]), row["sub"].get<std::int64_t>()}] = row["pdo"].get<std::string>();
@@ -205,7 +205,7 @@ TEST(Leadshine, EveryAlarmOfTheManualHasItsRow) {
   std::set<std::uint32_t> rows;
   std::set<std::uint32_t> told;
   for (const model::AlarmRow& row : model.alarms) rows.insert(row.value.value_or(0));
-  const json alarms = vectors("alarms");
+  const json alarms = ld2_vectors("alarms");
   EXPECT_GE(alarms.size(), 100U);
   for (const json& alarm : alarms)
     if (!alarm["error_code"].is_null()) told.insert(static_cast<std::uint32_t>(hex(alarm["error_code"])));

@@ -84,7 +84,7 @@ Refusal KincoDrive::may_write(ObjectKey key, std::int64_t value) const {
 }
 
 Refusal KincoDrive::take_write(ObjectKey key, int width, std::uint32_t raw, std::uint64_t tag, bool counted) {
-  if (lacks_.contains(key)) return Refusal::no_such_object;
+  if (entry(key) == nullptr) return Refusal::no_such_object;
   std::int64_t value = 0;
   Refusal refusal = objects_.check_write(key, width, raw, value);
   if (refusal == Refusal::none) refusal = may_write(key, value);
@@ -164,7 +164,7 @@ void KincoDrive::couple(ObjectKey key, std::int64_t value) {
 }
 
 void KincoDrive::refresh_settings() {
-  const Dec full = acceleration_dec(options_.mechanics.rps_per_s_at_full_current, encoder_counts_);
+  const Dec full = full_acceleration();
   const std::int64_t most = std::min<std::int64_t>(object(0x6073), 2048);
   settings_.profile_velocity = object(0x6081);
   settings_.acceleration = object(0x6083);
@@ -181,23 +181,6 @@ void KincoDrive::refresh_settings() {
     settings_.software_maximum = object(0x607D, 0x01) * fine_per_count;
     settings_.software_minimum = object(0x607D, 0x02) * fine_per_count;
   }
-}
-
-Refusal KincoDrive::poke(ObjectKey key, std::int64_t value) {
-  const ObjectEntry* entry = objects_.find(key);
-  if (entry == nullptr) return Refusal::no_such_object;
-  if (entry->access == Access::rw) {
-    return take_write(key, bytes_of(entry->type), static_cast<std::uint32_t>(value), 0, false);
-  }
-  if (measured(key)) return Refusal::read_only;
-  objects_.set(key, value_in(entry->type, static_cast<std::uint32_t>(value)));
-  return Refusal::none;
-}
-
-std::optional<std::int64_t> KincoDrive::peek(ObjectKey key) const {
-  if (entry(key) == nullptr) return std::nullopt;
-  if (const auto value = measured(key)) return value;
-  return objects_.get(key);
 }
 
 }  // namespace axisgate::simulated

@@ -39,7 +39,7 @@ std::uint16_t KincoDrive::statusword() const {
   if (state_ == not_ready_to_switch_on) return word;
   const auto set = [&word](std::uint16_t bit, bool on) { word = static_cast<std::uint16_t>(on ? word | bit : word); };
   set(0x4000, true);  // commutation found
-  set(0x8000, reference_found_);
+  set(0x8000, homed_);
   set(0x0800, inputs_.at_positive_limit() || inputs_.at_negative_limit() || motion_.limited());
   set(0x2000, homing_error_ || (error_1_ & 0x0200) != 0);
   if (state_ != operation_enabled) return word;
@@ -66,7 +66,7 @@ std::uint16_t KincoDrive::outputs() const {
   set(0x0020, enabled && (mode_ == 3 || mode_ == -3) && target_reached());
   set(0x0100, enabled);
   set(0x0200, limit);
-  set(0x0400, reference_found_);
+  set(0x0400, homed_);
   std::uint16_t pins = 0;
   const auto output = [&](int number, std::uint8_t sub) {
     const auto function = static_cast<std::uint16_t>(object(0x2010, sub));
@@ -86,7 +86,7 @@ std::optional<std::int64_t> KincoDrive::measured(ObjectKey key) const {
   const Dec speed = axis_.actual_speed();
   switch (key.index << 8 | key.sub) {
     case 0x604000:
-      return unheard_.value_or(controlword_);
+      return heard_controlword();
     case 0x604100:
       return statusword();
     case 0x606100:

@@ -52,7 +52,7 @@ void LeadshineDrive::refresh_settings() {
   settings_.deceleration = acceleration_of(std::min(object(0x6084), object(0x60C6)));
   settings_.limit_deceleration = acceleration_of(object(0x6085));
   settings_.maximum_speed = fastest;
-  settings_.full_acceleration = acceleration_dec(options_.mechanics.rps_per_s_at_full_current, options_.encoder_counts);
+  settings_.full_acceleration = full_acceleration();
   settings_.coasting = acceleration_dec(options_.mechanics.coasting_rps_per_s, options_.encoder_counts);
   settings_.software_maximum.reset();
   settings_.software_minimum.reset();
@@ -62,8 +62,6 @@ void LeadshineDrive::refresh_settings() {
     settings_.software_maximum = fine_of(object(0x607D, 2));
   }
 }
-
-bool LeadshineDrive::known_index(std::uint16_t index) const { return objects_.has_index(index); }
 
 std::uint8_t LeadshineDrive::highest_sub(std::uint16_t index) const {
   std::uint8_t highest = 0;
@@ -77,7 +75,7 @@ ObjectReply LeadshineDrive::read(ObjectKey key, Time now) {
   advance(now);
   const ObjectEntry* entry = objects_.find(key);
   if (entry == nullptr) {
-    if (!known_index(key.index)) return {abort_of(Refusal::no_such_object)};
+    if (!objects_.has_index(key.index)) return {abort_of(Refusal::no_such_object)};
     if (key.sub == 0) return {0, {highest_sub(key.index)}};
     return {sdo_abort::no_such_sub};
   }
@@ -87,7 +85,7 @@ ObjectReply LeadshineDrive::read(ObjectKey key, Time now) {
 
 std::uint32_t LeadshineDrive::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {
   advance(now);
-  if (objects_.find(key) == nullptr && known_index(key.index)) {
+  if (objects_.find(key) == nullptr && objects_.has_index(key.index)) {
     return key.sub == 0 ? abort_of(Refusal::read_only) : sdo_abort::no_such_sub;
   }
   const Refusal refusal = take_write(key, static_cast<int>(bytes.size()), little_endian(bytes), tag, true);
@@ -129,7 +127,7 @@ void LeadshineDrive::written(ObjectKey key, std::int64_t value, std::uint64_t ta
       break;
     case 0x3002:
       objects_.set({0x3003, 0}, 0);
-      store_until_ = now_ + options_.store_time;
+      begin_store();
       break;
     case 0x4000:
       if (value == 1) reset_fault(tag);
@@ -138,23 +136,6 @@ void LeadshineDrive::written(ObjectKey key, std::int64_t value, std::uint64_t ta
     default:
       break;
   }
-}
-
-std::uint32_t LeadshineDrive::poke(ObjectKey key, std::int64_t value) {
-  const ObjectEntry* entry = objects_.find(key);
-  if (entry == nullptr) return abort_of(Refusal::no_such_object);
-  if (entry->access == Access::rw) {
-    return abort_of(take_write(key, simulated::bytes_of(entry->type), static_cast<std::uint32_t>(value), 0, false));
-  }
-  if (measured(key)) return abort_of(Refusal::read_only);
-  objects_.set(key, value_in(entry->type, static_cast<std::uint32_t>(value)));
-  return 0;
-}
-
-std::optional<std::int64_t> LeadshineDrive::peek(ObjectKey key) const {
-  if (objects_.find(key) == nullptr) return std::nullopt;
-  if (const auto value = measured(key)) return value;
-  return objects_.get(key);
 }
 
 }  // namespace axisgate::simulated

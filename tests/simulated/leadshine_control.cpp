@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Controlword, modes, stops and alarms of LeadshineDrive (5, 6).
+// Modes, stops and alarms of LeadshineDrive (5, 6).
 #include "tests/simulated/leadshine_drive.hpp"
 
 namespace axisgate::simulated {
@@ -10,7 +10,6 @@ using enum Cia402State;
 constexpr std::uint16_t start_bit = 0x0010;
 constexpr std::uint16_t immediate_bit = 0x0020;
 constexpr std::uint16_t relative_bit = 0x0040;
-constexpr std::uint16_t reset_bit = 0x0080;
 constexpr std::uint16_t halt_bit = 0x0100;
 
 constexpr std::int64_t position_mode = 1;
@@ -30,71 +29,10 @@ int method_of(std::int64_t method) {
 
 }  // namespace
 
-void LeadshineDrive::take_controlword(std::uint16_t word, std::uint64_t tag) {
-  if (numb_) {
-    unheard_ = word;
-    return;
-  }
-  const auto rising = static_cast<std::uint16_t>(word & ~controlword_);
-  const auto falling = static_cast<std::uint16_t>(controlword_ & ~word);
-  controlword_ = word;
-  if (state_ == fault) {
-    if ((rising & reset_bit) != 0) reset_fault(tag);
-    return;
-  }
-  if (state_ == not_ready_to_switch_on || state_ == fault_reaction_active) return;
-  const bool was_operating = operating();
-  obey(command_in(word), tag);
-  if (was_operating && operating()) {
-    operate(rising, falling);
-  } else if (mode_ == homing_mode && (rising & start_bit) != 0 && at_once(object(0x6098))) {
-    finish_homing();
-  }
-}
-
-void LeadshineDrive::lock(bool locked) {
-  locked_out_ = locked;
-  const bool waits = state_ == ready_to_switch_on || state_ == switched_on;
-  if (!locked && waits) obey(command_in(controlword_), 0);
-}
-
-void LeadshineDrive::numb(bool numb) {
-  numb_ = numb;
-  if (numb) return;
-  set_mode(object(0x6060));
-  if (unheard_) take_controlword(*unheard_, 0);
-  unheard_.reset();
-  take_target_speed();
-}
-
-void LeadshineDrive::ignore_quick_stop(bool ignores) {
-  ignores_quick_stop_ = ignores;
-  if (state_ != quick_stop_active) return;
-  leave_operation(Cia402Command::quick_stop, switch_on_disabled, 0);
-  if (ignores) motion_.run_at(speed_of(object(0x60FF)), false);
-}
-
-void LeadshineDrive::obey(Cia402Command command, std::uint64_t tag) {
-  const bool enable = command == Cia402Command::enable_operation;
-  if (enable && inputs_.active(InputFunction::emergency_stop)) return;
-  if (enable && locked_out_ && state_ != operation_enabled) return;
-  if (state_ == operation_enabled && enable) {
-    if (pending_) {  // the stop under way is taken back
-      pending_.reset();
-      start_mode();
-    }
-    return;
-  }
-  // CiA 402: out of quick stop lead transitions 12 and 16 alone, the latter where the drive stays in it.
-  if (state_ == quick_stop_active && (command == Cia402Command::shutdown || (enable && pending_))) return;
-  const auto to = next_state(state_, command, true);
-  if (!to) return;
-  if (state_ == operation_enabled) {
-    leave_operation(command, *to, tag);
-  } else {
-    pending_.reset();
-    change_state(*to, tag);
-  }
+void LeadshineDrive::heard_beside_operation(std::uint16_t rising) {
+  if (mode_ != homing_mode || (rising & start_bit) == 0 || !at_once(object(0x6098))) return;
+  finish_homing();
+  homed_ = true;
 }
 
 // 605Ah and 605Dh (5.4): 1 and 5 the mode's own ramp, 2 and 6 the quick stop's, 3 and 7 the largest.
@@ -111,70 +49,20 @@ Dec LeadshineDrive::stop_deceleration(std::int64_t option) const {
   }
 }
 
-void LeadshineDrive::leave_operation(Cia402Command command, Cia402State to, std::uint64_t tag) {
+std::optional<LeadshineDrive::Stop> LeadshineDrive::stop_of(Cia402Command command) const {
   const bool slows_down = object(0x2506) == 0;  // Pr5.06: slow down and release, or release at once
-  pending_.reset();
-  halted_.reset();
-  if (command == Cia402Command::quick_stop && ignores_quick_stop_) {
-    change_state(quick_stop_active, tag);
-    return;
-  }
   if (command == Cia402Command::quick_stop) {
     const std::int64_t option = object(0x605A);
-    if (option == 0 && !slows_down) {
-      change_state(switch_on_disabled, tag);
-      return;
-    }
-    motion_.stop(stop_deceleration(option));
-    change_state(quick_stop_active, tag);
-    if (option < 5) pending_ = switch_on_disabled;
-    return;
+    if (option == 0 && !slows_down) return std::nullopt;
+    return Stop{stop_deceleration(option), option >= 5};
   }
-  if (command == Cia402Command::disable_voltage || !slows_down) {
-    change_state(to, tag);
-    return;
-  }
+  if (command == Cia402Command::disable_voltage || !slows_down) return std::nullopt;
   // Which ramp is not printed; this is the one of the worked examples, that of 6084h.
-  motion_.stop(settings_.deceleration);
-  pending_ = to;
-  if (axis_.speed() == 0) {
-    pending_.reset();
-    change_state(to, tag);
-  }
+  return Stop{settings_.deceleration, false};
 }
 
-void LeadshineDrive::change_state(Cia402State to, std::uint64_t tag) {
-  if (to == state_) return;
-  transitions_.push_back({now_, tag, state_, to});
-  if (transitions_.size() > transition_limit) transitions_.pop_front();
-  state_ = to;
-  if (to == operation_enabled) {
-    axis_.forget_demand();
-    halted_.reset();
-    start_mode();
-    return;
-  }
-  if (to == quick_stop_active || to == fault_reaction_active) return;  // still with torque, stopping
-  motion_.coast();
-  halted_.reset();
-}
-
-void LeadshineDrive::operate(std::uint16_t rising, std::uint16_t falling) {
-  halt(rising, falling);
-  if (mode_ == position_mode && (rising & start_bit) != 0) start_move(controlword_);
-  if (mode_ == homing_mode && (rising & start_bit) != 0) start_homing();
-  if (mode_ == homing_mode && (falling & start_bit) != 0 && motion_.task() == Task::homing) motion_.hold(axis_);
-}
-
-void LeadshineDrive::halt(std::uint16_t rising, std::uint16_t falling) {
-  if ((rising & halt_bit) != 0 && !halted_) {
-    halted_ = motion_;
-    motion_.stop(stop_deceleration(object(0x605D)));
-  } else if ((falling & halt_bit) != 0 && halted_) {
-    motion_ = *halted_;  // what was begun goes on
-    halted_.reset();
-    if (mode_ == velocity_mode) motion_.run_at(speed_of(object(0x60FF)), false);
-  }
+void LeadshineDrive::halt_ended() {
+  if (mode_ == velocity_mode) motion_.run_at(target_speed(), false);
 }
 
 void LeadshineDrive::start_move(std::uint16_t word) {
@@ -188,7 +76,6 @@ void LeadshineDrive::start_move(std::uint16_t word) {
 }
 
 void LeadshineDrive::start_homing() {
-  homed_ = homing_error_ = false;
   const HomingSettings settings{
       .search_speed = speed_of(object(0x6099, 1)),
       .index_speed = speed_of(object(0x6099, 2)),
@@ -199,16 +86,10 @@ void LeadshineDrive::start_homing() {
   motion_.home(method_of(object(0x6098)), settings, axis_, options_.encoder_counts);
 }
 
-void LeadshineDrive::set_mode(std::int64_t mode) {
-  if (mode == mode_ || numb_) return;
-  mode_ = mode;
-  if (operating()) start_mode();
-}
-
 void LeadshineDrive::start_mode() {
   halted_.reset();
   if (mode_ == velocity_mode) {
-    motion_.run_at(options_.needs_halt_edge ? 0 : speed_of(object(0x60FF)), false);
+    motion_.run_at(options_.needs_halt_edge ? 0 : target_speed(), false);
   } else if (mode_ == torque_mode) {
     motion_.run_torque();
   } else {  // 1 and 6 wait for their start; the others have no set-points here
@@ -217,25 +98,12 @@ void LeadshineDrive::start_mode() {
   if ((controlword_ & halt_bit) != 0) halt(halt_bit, 0);
 }
 
-void LeadshineDrive::take_target_speed() {
-  if (numb_ || !operating() || commanded().task() != Task::velocity || options_.needs_halt_edge) return;
-  commanded().run_at(speed_of(object(0x60FF)), false);
-}
-
 void LeadshineDrive::raise_fault(std::uint16_t code) {
   if (state_ == fault || state_ == fault_reaction_active || state_ == not_ready_to_switch_on) return;
   error_ = code;
-  pending_.reset();
-  halted_.reset();
   // 605Eh counts for communication alarms only; 0 and all other alarms stop by an attribute that is not printed.
   const bool by_option = code >> 12 == 8 && object(0x605E) != 0 && mode_ != torque_mode;
-  if (state_ == operation_enabled && by_option) {
-    motion_.stop(stop_deceleration(object(0x605E)));
-    change_state(fault_reaction_active, 0);
-    pending_ = fault;
-  } else {
-    change_state(fault, 0);
-  }
+  enter_fault(by_option ? std::optional(stop_deceleration(object(0x605E))) : std::nullopt);
 }
 
 void LeadshineDrive::reset_fault(std::uint64_t tag) {

@@ -16,6 +16,18 @@ constexpr ObjectKey save_status{0x3003, 0};
 constexpr std::uint16_t following_alarm = 0x8611;
 constexpr std::uint16_t heartbeat_alarm = 0x8130;
 
+Cia402Facts facts_of(const LeadshineOptions& options) {
+  return {.encoder_counts = options.encoder_counts,
+          .inputs = 6,  // SI1 to SI6; DI3 to DI6 exist (1)
+          .boot_time = options.boot_time,
+          .store_time = options.store_time,
+          .fault_reset_word = 0x0080,
+          .needs_shutdown_first = true,
+          .shutdown_leaves_quick_stop = false,  // CiA 402: transitions 12 and 16 alone do
+          .stands_released_at_once = true,
+          .takes_new_speed_while_on = !options.needs_halt_edge};
+}
+
 }  // namespace
 
 CommunicationFacts communication_of(const LeadshineOptions& options) {
@@ -35,10 +47,9 @@ CommunicationFacts communication_of(const LeadshineOptions& options) {
 }
 
 LeadshineDrive::LeadshineDrive(const LeadshineOptions& options)
-    : options_(options),
-      objects_(leadshine_objects(), leadshine_parameters(), OutOfRange::refuse),
-      inputs_(input_count),
-      axis_(options_.mechanics, options_.encoder_counts) {
+    : Cia402Drive(facts_of(options), options.mechanics,
+                  {leadshine_objects(), leadshine_parameters(), OutOfRange::refuse}),
+      options_(options) {
   objects_.set_stored({0x2023, 0}, options_.node);
   for (const auto& [key, value] : options_.stored) objects_.set_stored(key, value);
   power_up();
@@ -76,61 +87,20 @@ void LeadshineDrive::power_up() {
 }
 
 void LeadshineDrive::restart(Time now) {
-  advance(now);
-  ++restarts_;
-  store_until_.reset();  // a save under way is lost with the power
-  boot_until_ = now + options_.boot_time;
-  pending_.reset();
-  motion_.coast();
-  halted_.reset();
+  Cia402Drive::restart(now);
   error_ = 0;
-  change_state(Cia402State::not_ready_to_switch_on, 0);
   advance(now);
 }
 
-bool LeadshineDrive::quiescent() const {
-  return !boot_until_ && !store_until_ && !pending_ && !halted_ && motion_.at_rest(axis_) &&
-         axis_.demand() == axis_.actual() && !inputs_.active(InputFunction::emergency_stop);
+void LeadshineDrive::store_now() {
+  objects_.set(save_trigger, 0);
+  objects_.set(save_status, save_word);
+  objects_.store(Keep::eeprom);
 }
 
-void LeadshineDrive::advance(Time now) {
-  const std::int64_t until = now / one_millisecond;
-  while (ticks_ < until) {
-    // A drive at rest has nothing to compute; only its inputs are looked at, once.
-    ticks_ = quiescent() ? until : ticks_ + 1;
-    tick(ticks_ * one_millisecond);
-  }
-  now_ = std::max(now_, now);
-  if (boot_until_ && now_ >= *boot_until_) {
-    boot_until_.reset();
-    power_up();
-  }
-}
-
-void LeadshineDrive::tick(Time at) {
-  now_ = at;
-  if (boot_until_ && at >= *boot_until_) {
-    boot_until_.reset();
-    power_up();
-  }
-  if (store_until_ && at >= *store_until_) {
-    store_until_.reset();
-    objects_.set(save_trigger, 0);
-    objects_.set(save_status, save_word);
-    objects_.store(Keep::eeprom);
-    ++stores_;
-  }
-  inputs_.follow(options_.mechanics, axis_.physical());
+void LeadshineDrive::before_step() {
   if (inputs_.active(InputFunction::emergency_stop) && operating()) obey(Cia402Command::quick_stop, 0);
   follow_torque();
-  const Dec before = axis_.speed();
-  const Dec speed = motion_.next_speed(axis_, inputs_, settings_);
-  axis_.step(speed, motion_.position_loop(), (object(0x607E) & 0x80) != 0 ? -1 : 1);
-  last_step_ = axis_.speed() - before;
-  if (!boot_until_) {
-    follow_motion();
-    supervise();
-  }
 }
 
 // 6071h is followed on the slope of 6087h, in 0.1 % per second (5.7); it counts in millionths, for the slope's sake.
@@ -140,29 +110,7 @@ void LeadshineDrive::follow_torque() {
   const std::int64_t wanted = torque ? std::clamp<std::int64_t>(object(0x6071), -most, most) * 1000 : 0;
   const std::int64_t slope = torque ? object(0x6087) : full_torque * 1000;
   torque_demand_ += std::clamp(wanted - torque_demand_, -slope, slope);
-  const Dec full = acceleration_dec(options_.mechanics.rps_per_s_at_full_current, options_.encoder_counts);
-  settings_.torque_acceleration = full * torque_demand_ / (full_torque * 1000);
-}
-
-void LeadshineDrive::follow_motion() {
-  if (pending_ && axis_.speed() == 0) {
-    const Cia402State to = *pending_;
-    pending_.reset();
-    change_state(to, 0);
-    return;
-  }
-  if (motion_.task() != Task::homing) return;
-  switch (motion_.homing()->outcome()) {
-    case HomingRun::Outcome::running:
-      return;
-    case HomingRun::Outcome::reference_found:
-      finish_homing();
-      break;
-    case HomingRun::Outcome::failed:
-      homing_error_ = true;
-      break;
-  }
-  motion_.hold(axis_);
+  settings_.torque_acceleration = full_acceleration() * torque_demand_ / (full_torque * 1000);
 }
 
 // 5012h:04 bits 2 and 3 tell how the offset is applied (3.4).
@@ -171,7 +119,6 @@ void LeadshineDrive::finish_homing() {
   const std::int64_t offset = object(0x607C);
   const std::int64_t units = (how & 1) != 0 ? 0 : how == 2 ? -offset : offset;
   axis_.redefine(fine_of(units));
-  homed_ = true;
 }
 
 void LeadshineDrive::supervise() {
@@ -195,7 +142,7 @@ std::uint8_t LeadshineDrive::error_register() const {
 
 void LeadshineDrive::inject_fault(std::uint16_t code) {
   cause_ = code;
-  if (!boot_until_) raise_fault(code);
+  if (!booting()) raise_fault(code);
 }
 
 }  // namespace axisgate::simulated

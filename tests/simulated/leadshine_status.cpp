@@ -70,7 +70,7 @@ std::uint32_t LeadshineDrive::input_word() const {
 std::int64_t LeadshineDrive::torque_actual() const {
   if (motion_.task() == Task::coast) return 0;
   if (motion_.task() == Task::torque) return torque_demand_ / 1000;
-  const Dec full = acceleration_dec(options_.mechanics.rps_per_s_at_full_current, options_.encoder_counts);
+  const Dec full = full_acceleration();
   return std::clamp<std::int64_t>(last_step_ * full_torque / std::max<Dec>(full, 1), -full_torque, full_torque);
 }
 
@@ -85,7 +85,7 @@ std::optional<std::int64_t> LeadshineDrive::measured(ObjectKey key) const {
     case 0x603F00:
       return error_;
     case 0x604000:
-      return unheard_.value_or(controlword_);
+      return heard_controlword();
     case 0x604100:
       return statusword();
     case 0x606100:

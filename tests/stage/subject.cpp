@@ -232,23 +232,29 @@ bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& 
   return true;
 }
 
+namespace {
+
+simulated::Cia402Drive& cia402(GatewayStage& stage, Subject subject) {
+  if (subject == Subject::leadshine) return stage.leadshine(0);
+  return stage.drive(0);
+}
+
+}  // namespace
+
 void lock(GatewayStage& stage, Subject subject, bool locked) {
   if (is_keya(subject)) return stage.keya(0).lock(locked);
   if (subject == Subject::id286pro) return stage.id286pro(0).set_enable_switch(!locked);
-  if (subject == Subject::leadshine) return stage.leadshine(0).lock(locked);
-  stage.drive(0).lock(locked);
+  cia402(stage, subject).lock(locked);
 }
 
 void ignore_quick_stop(GatewayStage& stage, Subject subject, bool ignores) {
-  if (subject == Subject::leadshine) return stage.leadshine(0).ignore_quick_stop(ignores);
-  stage.drive(0).ignore_quick_stop(ignores);
+  cia402(stage, subject).ignore_quick_stop(ignores);
 }
 
 void numb(GatewayStage& stage, Subject subject, bool numb) {
   if (subject == Subject::id286pro) return stage.id286pro(0).numb(numb);
   if (is_keya(subject)) return stage.keya(0).numb(numb);
-  if (subject == Subject::leadshine) return stage.leadshine(0).numb(numb);
-  stage.drive(0).numb(numb);
+  cia402(stage, subject).numb(numb);
 }
 
 ObjectPlace readable_object(Subject subject) {
