@@ -12,6 +12,7 @@
 #include "gateway/check/check_limits.hpp"
 #include "gateway/check/check_lines.hpp"
 #include "gateway/check/check_masters.hpp"
+#include "gateway/check/check_watch.hpp"
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/config/bus_budget.hpp"
 
@@ -168,6 +169,7 @@ void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
   add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
   if (floats) add_line(out, "", float_text(config));
   add_lines(out, limit_lines(config, axis));
+  add_lines(out, watch_lines(axis));
   add_line(out, "not on it", fmt::format("quantities: {}", missing_quantities(axis)));
   add_line(out, "", fmt::format("commands: {}", missing_commands(axis)));
   if (config.inverted && axis.command(Command::home)) {

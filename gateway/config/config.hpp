@@ -15,6 +15,7 @@
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/command.hpp"
+#include "gateway/model/watch_rules.hpp"
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
@@ -40,6 +41,7 @@ struct AxisConfig {
   std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
   LeaseRules lease;
+  model::WatchRules watch;
   Duration jog_timeout = std::chrono::milliseconds(500);
   std::string motor;  ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
   std::optional<Rational> metres_per_rev{};  ///< what DDS shows it in; none: rad

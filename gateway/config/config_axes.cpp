@@ -55,6 +55,19 @@ void read_lease(const ConfigNode& node, AxisConfig& axis, ConfigFaults& faults) 
   }
 }
 
+model::WatchRules read_watch(const ConfigNode& node) {
+  model::WatchRules watch;
+  const auto object = node.child("watch");
+  if (!object) return watch;
+  if (const auto travel = object->child("travel_rev")) watch.travel = travel->rational().value_or(watch.travel);
+  watch.settle = object->milliseconds("settle_ms", watch.settle);
+  const std::string reaction = object->string("reaction").value_or("alarm");
+  if (reaction == "stop") watch.reaction = model::WatchReaction::stop;
+  if (reaction == "off") watch.reaction = model::WatchReaction::off;
+  watch.units = object->string("units") != "off";
+  return watch;
+}
+
 }  // namespace
 
 AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults) {
@@ -75,6 +88,7 @@ AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults) {
   axis.vertical = node.flag("vertical", false);
   axis.metres_per_rev = read_metres_per_rev(node, faults);
   read_lease(node, axis, faults);
+  axis.watch = read_watch(node);
   return axis;
 }
 

@@ -40,6 +40,7 @@ profile::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) 
     resolved.homing_method = axis.homing_method;
     resolved.homing_timeout = axis.homing_timeout;
     resolved.lease = axis.lease;
+    resolved.watch = axis.watch;
     resolved.jog_timeout = axis.jog_timeout;
     resolved.motor = axis.motor;
     input.axes.push_back(std::move(resolved));

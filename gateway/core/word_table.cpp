@@ -89,6 +89,13 @@ constexpr auto kWords = std::to_array<Word>({
     {axis_alarm, 12, "profile_mismatch", "the device refuses what its profile needs: only reads and stops pass",
      "another kind of drive, another firmware, or a wrong profile",
      "see the log line: it names the object; axisgate profile check, axisgate scan", true},
+    {axis_alarm, 13, "unexpected_motion", "the motor moves, or has torque, and nothing that was asked for explains it",
+     "a drive that heeds no stop, another master or an input of the drive, a load that is stronger than the motor",
+     "see the event: it says what was expected; the next enable or fault_reset clears it"},
+    {axis_alarm, 14, "units_disagree", "velocity and position of the drive do not fit each other: no motion is started",
+     "a gear or an encoder constant of the drive that is not as configured, an encoder on the load",
+     "see the event for both numbers; correct \"constants\", or write \"watch\": {\"units\": \"off\"}; then reload, or "
+     "fault_reset"},
 
     {gateway_state, 0, "starting", "the buses are being opened", "", ""},
     {gateway_state, 1, "running", "every axis is online", "", ""},

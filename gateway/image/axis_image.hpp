@@ -50,9 +50,11 @@ enum class AxisAlarm : std::uint8_t {
   nvm_budget = 9,
   clamped = 10,
   stop_options = 11,
-  profile_mismatch = 12,  ///< the device refuses what the profile needs
+  profile_mismatch = 12,   ///< the device refuses what the profile needs
+  unexpected_motion = 13,  ///< nothing that was asked for explains it
+  units_disagree = 14,     ///< velocity and position do not fit each other
 };
-inline constexpr std::size_t kAxisAlarmCount = 13;
+inline constexpr std::size_t kAxisAlarmCount = 15;
 [[nodiscard]] constexpr std::uint32_t bit(AxisAlarm alarm) { return 1U << static_cast<unsigned>(alarm); }
 [[nodiscard]] std::string_view text(AxisAlarm alarm);
 [[nodiscard]] std::string_view text(LinkState state);

@@ -25,8 +25,8 @@ class AxisRecord {
   void commanded(ClientId by, Point accepted) { commands_.note(accepted, by); }
   /// A client's stop was accepted; by 0: the gateway's own (a lease, a jog button).
   void stopped(ClientId by) { stops_.note(++now_, by); }
-  /// The axis stops by the motion rules: what was accepted before starts and enables nothing.
-  void stop() { stop_ = ++now_; }
+  /// The axis stops by what was accepted at this point: what was accepted before starts and enables nothing.
+  void stop(Point accepted) { stop_ = std::max(stop_, accepted); }
   /// What ran is over for good: velocity and torque are needed again.
   void end() { end_ = ++now_; }
 

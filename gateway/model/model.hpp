@@ -20,6 +20,7 @@
 #include "gateway/image/command.hpp"
 #include "gateway/image/lease.hpp"
 #include "gateway/model/cia402.hpp"
+#include "gateway/model/watch_rules.hpp"
 
 namespace axisgate::model {
 
@@ -236,13 +237,14 @@ struct AxisModel : Capabilities {
   Rational units_per_rev{10000};
   std::optional<std::uint32_t> rated_speed;  ///< 0.001 rpm; where the profile has a constant for it
   std::int64_t standstill_velocity = 1000;   ///< 0.001 rpm
-  /// For so long after a start, a stop or an end velocity_actual may still show what was before. Of a drive whose
-  /// profile does not say it nobody knows: too long only waits, too short takes an axis that turns for one that stands.
+  /// velocity_actual may still show what was before a start, a stop or an end. Too short takes what turns for standing.
   Duration velocity_lag = std::chrono::milliseconds(300);
   Duration homing_timeout = std::chrono::seconds(60);
   std::optional<std::int16_t> homing_method;  ///< configured
   bool configured_torque_limit = false;
   LeaseRules lease;
+  WatchRules watch;
+  bool position_commanded = false;  ///< position_actual is what the drive has asked of its motor: nothing to watch
   Duration jog_timeout = std::chrono::milliseconds(500);
 
   std::vector<Binding> bindings;                          ///< supported quantities, in the order of their numbers
@@ -254,8 +256,7 @@ struct AxisModel : Capabilities {
   std::array<ObjectId, 2> fault_words{kNoObject, kNoObject};
   Cia402Properties cia402;
   std::optional<VirtualProperties> virtual_axis;  ///< statusword, controlword and mode are `emulated` objects then
-  /// What must be read to know the state: the statusword itself, or what a virtual axis makes it from. The first is
-  /// what a drive that is not there is asked for.
+  /// The statusword, or what a virtual axis makes it from; the first is what a drive that is not there is asked for.
   std::vector<ObjectId> state_sources;
   /// Unified mode -> what the drive calls it; absent: refused. In ascending order of the unified number, but that what
   /// a motor was set to by its maker's tool comes first (Keya): a virtual axis begins with the first.
@@ -267,8 +268,7 @@ struct AxisModel : Capabilities {
   std::vector<std::pair<std::int16_t, ObjectId>> keep_alive{};
   std::vector<std::int16_t> homing_methods;
   std::vector<HomingNeed> homing_needs;
-  /// Velocity and torque set-points that must hold 0 before torque comes on, those without a known unit included: 0 is
-  /// 0 in any unit (Kinco's current set-points, where no rated current was configured).
+  /// Velocity and torque set-points that must hold 0 before torque comes on, also those without a known unit.
   std::vector<ObjectId> zero_before_enable;
   std::optional<int> homed_mode{};  ///< `homed` and `homing_failed` mean that in this mode alone; none: in all
   std::optional<Condition> homed;

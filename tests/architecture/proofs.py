@@ -4,7 +4,7 @@ import re
 
 from sources import CODE, files, lines
 
-FAULTS = 36
+FAULTS = 37
 C_TEST = re.compile(r"^\s*TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.M)
 STORIES = {"stories": "tests/integration", "vcan_stories": "tests/vcan", "modbus_clients": "tests/integration/modbus_clients"}
 

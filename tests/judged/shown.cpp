@@ -57,6 +57,12 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
     return "shown owner " + std::to_string(owner) + ", its lease for " + std::to_string(lease_ms) + " ms" +
            (latched ? ", stop-latched" : ", not stop-latched") + (mode ? ", in mode " + std::to_string(*mode) : "") +
            "; the contract: " + contract.expected();
+  // The drive obeys, and counts as its profile says: whatever was asked in whatever order, no watch has anything to
+  // say.
+  constexpr unsigned kBitOfUnexpectedMotion = 13, kBitOfUnitsDisagree = 14;
+  for (const unsigned watched : {kBitOfUnexpectedMotion, kBitOfUnitsDisagree})
+    if (bit_of(shown.wide(kAlarms), watched))
+      return "alarm " + std::to_string(watched) + " is shown of a drive that obeys";
   // 3.2 Unknown: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read
   // 0".
   const std::uint16_t link = shown.words[kLink];

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 
 #include "tests/stage_drive/keya_rig.hpp"
@@ -23,7 +24,11 @@ constexpr Instant kNow = Instant{} + 1h;
 struct Told {
   explicit Told(Speech speech) : model(keya_model({.speech = speech, .keep_alive = kPeriod})) {
     for (std::size_t slot = 0; slot < 2; ++slot)
-      cores.push_back({.drive = model, .model = model.axes[slot], .store = store, .turn = in_sight});
+      cores.push_back({.drive = model,
+                       .model = model.axes[slot],
+                       .store = store,
+                       .turn = in_sight,
+                       .motion = drive::Motion(model.axes[slot].velocity_lag, records.at(slot))});
     store.begin_exchange();
     for (drive::AxisCore& core : cores) core.begin_mode();
     show(kNow);
@@ -52,6 +57,7 @@ struct Told {
   model::DriveModel model;
   drive::ObjectStore store{model.objects};
   drive::Turn in_sight{.now = kNow, .link = LinkState::online};
+  std::array<AxisRecord, 2> records{};
   std::vector<drive::AxisCore> cores;
   DriveControl control{model, store};
 };

@@ -19,7 +19,8 @@ Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, co
       slot_(slot),
       core_{drive, drive.axes[slot], store, turn, Motion{drive.axes[slot].velocity_lag, image.record}},
       shown_(core_, image_, host_),
-      ownership_(image.lease, drive.axes[slot].lease) {
+      ownership_(image.lease, drive.axes[slot].lease),
+      watch_(core_, host_) {
   core_.loss_stop_ms = model::loss_stop_ms(drive, std::nullopt);
 }
 
@@ -41,6 +42,7 @@ void Axis::set_loss_reaction(std::optional<bool> holds) {
 }
 
 void Axis::on_bring_up() {
+  watch_.renumbered();
   core_.homing_method.reset();
   if (core_.model.homing_method) core_.homing_method = *core_.model.homing_method;
   core_.offset_owed.reset();
@@ -153,6 +155,8 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   // Beside a stop, a controlword that disables is part of it, in a block too: it is not lost.
   if (stop && batch.controlword && is_stop(*batch.controlword, true)) batch.single_controlword = true;
   if (code == Errc::ok) code = admit(core_, batch);
+  const bool untrue = core_.alarm(AxisAlarm::units_disagree) && starts_motion(core_, batch);
+  if (code == Errc::ok && untrue) code = Errc::state_unsuitable;
   // A run that follows a jog has no button: it runs at what was asked for last, not at the jog's speed.
   const bool runs = batch.command == Command::run_velocity && !batch.jogs && core_.velocity_beside_jog;
   if (runs && std::ranges::none_of(batch.setpoints,
@@ -337,6 +341,7 @@ void Axis::complete(bus::JobId id, const BatchResult& result) {
   note_begun(pending, result.outcome.code == Errc::ok);
   note_stop(pending, true);
   note_jog(pending, result.outcome.code);
+  watch_.finished(pending.batch(), result.outcome.code, pending.command_sequence->begun());
   if (!pending_.starts_motion()) core_.motion.unmask_target_reached();
   BatchResult told = result;
   told.stop = pending.command_sequence->began_as_stop() ? pending.accepted : 0;

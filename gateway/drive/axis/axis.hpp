@@ -11,13 +11,13 @@
 
 #include "adapters/bus/exchange.hpp"
 #include "gateway/drive/axis/axis_publisher.hpp"
+#include "gateway/drive/axis/axis_watch.hpp"
 #include "gateway/drive/axis/pending_batches.hpp"
 #include "gateway/drive/axis/telling.hpp"
 #include "gateway/drive/motion/accepted.hpp"
 #include "gateway/drive/motion/late_enable.hpp"
 #include "gateway/drive/motion/owed_stop.hpp"
 #include "gateway/drive/motion/ownership.hpp"
-#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/image/command_port.hpp"
 
 namespace axisgate::drive {
@@ -219,7 +219,7 @@ class Axis {
   Instant position_at_ = kLongAgo;       ///< the newest sample of the position
   Duration position_gap_{};              ///< between two of them, while it jogs
   OwedStop owed_;
-  StopWatch stop_watch_;
+  AxisWatch watch_;
   LateEnable late_enable_;
   Telling telling_;
   bool closing_ = false;  ///< the gateway ends, or lets go of the drive

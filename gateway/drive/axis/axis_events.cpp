@@ -24,17 +24,14 @@ bool told_by_its_server(const WriteBatch& batch, Errc code) {
   return modbus && (code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden);
 }
 
-/// ": alarm local_control: ...", of an enable that is refused for what an alarm says.
+/// ": alarm local_control: ...", of an enable or a start that is refused for what an alarm says.
 std::string alarm_against(const AxisCore& core, AxisNumber axis, const WriteBatch& batch, Errc code) {
   const bool by_alarm = code == Errc::state_unsuitable || code == Errc::identity_mismatch;
+  if (by_alarm && starts_motion(core, batch) && core.alarm(AxisAlarm::units_disagree))
+    return ": alarm units_disagree: a fault_reset ends it, once its cause is mended";
   if (!by_alarm || !asks_to_enable(batch)) return {};
   const std::string alarm = against_enable(core.alarms, axis);
   return alarm.empty() ? alarm : ": " + alarm;
-}
-
-bool resets(const WriteBatch& batch) {
-  return batch.command == Command::fault_reset ||
-         (batch.controlword && (*batch.controlword & model::controlword::kFaultReset) != 0);
 }
 
 }  // namespace
@@ -45,7 +42,7 @@ bool resets(const WriteBatch& batch) {
 // everybody's: whoever owns the axis must see who has used that.
 void Axis::tell_asked(const WriteBatch& asked, const WriteBatch& carried_out) {
   if (!asked.life || reads_alone(asked)) return;
-  if (resets(asked)) shown_.reset_asked(asked.life->name);
+  if (resets_fault(asked)) shown_.reset_asked(asked.life->name);
   const auto left_out = telling_.asked(carried_out, core_.turn.now);
   if (!left_out) return;
   WriteBatch shown = asked;
@@ -88,7 +85,7 @@ void Axis::tell_refused(const WriteBatch& asked, const BatchResult& result) {
 // A set-point in whose place a newer one was sent is no news; what was not reached is told with what was awaited.
 void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
   const WriteBatch& batch = pending.command_sequence->batch();
-  if (outcome.code != Errc::ok && resets(batch)) shown_.reset_failed();
+  if (outcome.code != Errc::ok && resets_fault(batch)) shown_.reset_failed();
   if (outcome.code == Errc::ok || outcome.code == Errc::superseded || outcome.code == Errc::not_reached) return;
   if (batch.client == 0 || reads_alone(batch)) return;
   if (pending.refusal == Errc::ok && told_by_its_server(batch, outcome.code)) return;

@@ -16,6 +16,7 @@ void Axis::on_samples() { core_.refresh_virtual(); }
 // What was accepted stays what it is in register units; the drive's numbers for it are others now.
 void Axis::on_scale() {
   shown_.show_model();
+  watch_.renumbered();
   core_.motion.scale_changed();
   const auto raw_of = [this](const auto& each) {
     return core_.model.binding(each.second.quantity)->to_raw(each.second.value, core_.object(each.first));
@@ -41,6 +42,9 @@ void Axis::observe() {
   set_alarm(AxisAlarm::clamped, clamped);
   observe_jog();
   observe_stop();
+  watch_.observe(
+      std::ranges::any_of(pending_, [](const Pending& p) { return AxisWatch::explains(p.command_sequence->batch()); }));
+  if (const auto stop = watch_.take_stop(); stop && !closing_) stop_by_itself(*stop, false, [](const BatchResult&) {});
   observe_owed();
   if (!core_.motion.take_homing_timeout()) return;
   host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
@@ -73,6 +77,7 @@ void Axis::observe_counter() {
   core_.counter_wrapped = true;
   core_.homed = false;
   core_.machine.forget_homing();
+  watch_.renumbered();
   host_.event(image_.number, EventKind::position_wrapped, 0,
               fmt::format("the drive's position counter has run over, from {} to {}: it is not homed any more", *before,
                           *counted_));
@@ -128,6 +133,7 @@ void Axis::on_unseen_restart(const char* sign) {
   core_.homed = false;
   core_.machine.forget_homing();
   core_.store.invalidate_all();
+  watch_.renumbered();
   host_.event(image_.number, EventKind::warning, 0, sign);
 }
 

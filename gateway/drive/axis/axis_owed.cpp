@@ -25,18 +25,6 @@ std::optional<StopKind> kind_of(const WriteBatch& batch) {
   return std::max(kind.value_or(StopKind::halt), quick ? StopKind::quick_stop : StopKind::disable);
 }
 
-Command command_of(StopKind stop) {
-  switch (stop) {
-    case StopKind::halt:
-      return Command::halt;
-    case StopKind::quick_stop:
-      return Command::quick_stop;
-    case StopKind::disable:
-      break;
-  }
-  return Command::disable;
-}
-
 }  // namespace
 
 // --- What is owed
@@ -45,6 +33,7 @@ Command command_of(StopKind stop) {
 void Axis::owe(const WriteBatch& stop) {
   const auto kind = kind_of(stop);
   if (!kind) return;
+  watch_.stopped(stop, *kind);
   owed_.accepted(*kind, core_.store.exchange());
   observe_owed();
 }
@@ -60,6 +49,7 @@ bool Axis::stop_comes_first(const WriteBatch& batch) const {
 bool Axis::may_be_enabled() const { return core_.turn.link != LinkState::online || core_.facts().enabled(); }
 
 void Axis::on_restarted() {
+  watch_.renumbered();
   core_.motion.disarm();
   core_.begin_mode();
   // No end of a jog: what has said that it starts may turn on all the same (NMT reset communication), and its button
@@ -156,7 +146,7 @@ void Axis::note_stop(const Pending& pending, bool ended) {
   const bool confirmed = command_sequence.stop_confirmed();
   const bool goes_back = *kind == StopKind::halt && halts_by_position(core_);
   if (confirmed && !goes_back && pending.accepted == core_.motion.record().newest_stop())
-    stop_watch_.begin({*kind, pending.accepted});
+    watch_.stop_watch().begin({*kind, pending.accepted});
   if (ended || confirmed)
     tell_end(owed_.attempted(*kind, command_sequence.stop_confirmed(), core_.store.exchange(), core_.turn.now));
 }
@@ -164,18 +154,19 @@ void Axis::note_stop(const Pending& pending, bool ended) {
 // What was told done is so until the motor stands, or something else is asked of it: a drive that shows a stop and
 // turns on has not stopped.
 void Axis::observe_stop() {
-  const auto stop = stop_watch_.watched();
+  const auto stop = watch_.stop_watch().watched();
   if (!stop) return;
   const Motion& motion = core_.motion;
   const bool holds = motion.stopping() && core_.motion.record().newest_stop() == stop->at && !motion.runs_raw();
-  if (!holds || !core_.shows_torque()) return stop_watch_.end();
+  if (!holds || !core_.shows_torque()) return watch_.stop_watch().end();
   const model::Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
   const auto speed = core_.value(Quantity::velocity_actual);
   if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online || velocity->object == model::kNoObject)
     return;
   const Duration period =
       std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
-  if (!stop_watch_.goes_on(std::abs(*speed), core_.store[velocity->object].sent_at, core_.model.velocity_lag + period))
+  if (!watch_.stop_watch().goes_on(std::abs(*speed), core_.store[velocity->object].sent_at,
+                                   core_.model.velocity_lag + period))
     return;
   image_.unheeded_stop = stop->at;
   if (image_.latest.stop == stop->at) image_.latest.result = CommandResult::not_reached;

@@ -181,6 +181,7 @@ bool Axis::may_be_jog() const {
 // --- What was accepted last ------------------------------------------------------------------------------------------
 
 void Axis::accept(const WriteBatch& batch) {
+  watch_.accepted(batch);
   if (!batch.jogs)
     for (const Setpoint& sp : batch.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.record().now());
   if (batch.mode) accepted_.note(Quantity::mode, *batch.mode, core_.motion.record().now());

@@ -56,7 +56,8 @@ void AxisPublisher::tell_changes(const AxisImage& before) {
   const std::uint32_t raised = image_.alarms & ~before.alarms;
   for (std::size_t i = 0; i < kAxisAlarmCount; ++i) {
     const auto alarm = static_cast<AxisAlarm>(i);
-    const bool told = alarm == AxisAlarm::profile_mismatch;  // by its drive, with what it lacks
+    const bool told = alarm == AxisAlarm::profile_mismatch ||  // by its drive, with what it lacks
+                      alarm == AxisAlarm::unexpected_motion || alarm == AxisAlarm::units_disagree;  // by the watch
     if ((raised & bit(alarm)) != 0 && !told)
       host_.event(image_.number, EventKind::warning, static_cast<std::uint32_t>(i), alarm_text(core_, alarm));
   }

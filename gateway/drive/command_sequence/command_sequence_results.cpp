@@ -251,13 +251,12 @@ void CommandSequence::reach(const Action& action) {
       motion.passed(model::request_of(*batch_.controlword));
       break;
     case Mark::quick_stopped:
-      if (!motion.latched()) motion.stop(true, core_.turn.now);
+      // The stop that it takes the place of is no newer for it: what was accepted since comes after both.
+      if (!motion.latched()) motion.stop(true, core_.turn.now, stop_ ? motion.record().newest_stop() : asked_);
       motion.disarm();
-      asked_ = core_.motion.record().now();
       break;
     case Mark::halted:
-      motion.stop(false, core_.turn.now);
-      asked_ = core_.motion.record().now();
+      motion.stop(false, core_.turn.now, asked_);
       break;
     case Mark::run_raw:
       core_.sent_to.reset();

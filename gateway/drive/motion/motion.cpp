@@ -44,11 +44,11 @@ std::optional<Quantity> followed_target(const AxisFacts& facts) {
 
 // Stops -------------------------------------------------------------------------------------------------------------
 
-void Motion::stop(bool latch, Instant now) {
+void Motion::stop(bool latch, Instant now, std::optional<AxisRecord::Point> at) {
   // What stood, and was not being started, stands: no sample of it is of before.
   const bool stood = rests_ && kind_ == MotionKind::none && !raw_run_ && !target_reached_masked_;
   end(MotionState::aborted);
-  record_.stop();
+  record_.stop(at ? *at : record_.accepted());
   sightings_.asked();
   if (!stood) {
     stopping_ = true;

@@ -36,8 +36,8 @@ class Motion {
   // --- Stops and the stop latch -------------------------------------------------------------------------------------
 
   /// A stop was accepted: the motion is over, velocity and torque are needed again. `latch`: quick_stop and lease
-  /// actions.
-  void stop(bool latch, Instant now);
+  /// actions. `at`: the point of what it is a part of; none: it is accepted now.
+  void stop(bool latch, Instant now, std::optional<AxisRecord::Point> at = {});
   /// One was accepted while it moved, or may have, and it was not seen to stand since.
   [[nodiscard]] bool stopping() const { return stopping_; }
   /// An enable accepted after the stop has been carried out (command 1, coil 0).

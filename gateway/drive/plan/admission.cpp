@@ -302,8 +302,12 @@ bool asks_to_enable(const WriteBatch& batch) {
   return batch.command == Command::enable || (batch.controlword && model::enables(*batch.controlword));
 }
 
-bool asks_to_begin(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
+bool resets_fault(const WriteBatch& batch) {
+  return batch.command == Command::fault_reset ||
+         (batch.controlword && (*batch.controlword & model::controlword::kFaultReset) != 0);
+}
 
+bool asks_to_begin(const WriteBatch& batch) { return asks_to_enable(batch) || needs_ready(batch.command); }
 WriteBatch stop_alone(const WriteBatch& batch) {
   WriteBatch out = batch;
   out.setpoints.clear();

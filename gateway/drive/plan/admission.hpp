@@ -36,7 +36,9 @@ struct PassedLimit {
 [[nodiscard]] bool stops_at_most(const WriteBatch& batch);
 /// The write batch asks for operation_enabled, by command or controlword.
 [[nodiscard]] bool asks_to_enable(const WriteBatch& batch);
-/// That, or for what an axis must be enabled for.
+/// Likewise for a fault_reset.
+[[nodiscard]] bool resets_fault(const WriteBatch& batch);
+/// To enable, or for what an axis must be enabled for.
 [[nodiscard]] bool asks_to_begin(const WriteBatch& batch);
 /// What is left of a write batch that holds a stop when everything else is taken out of it.
 [[nodiscard]] WriteBatch stop_alone(const WriteBatch& batch);

@@ -80,6 +80,7 @@ struct QuantitySpec {
   std::optional<model::PollClass> poll;
   std::optional<model::Amount> min, max;
   std::vector<BitsSpec> bits;
+  bool commanded = false;  ///< position_actual: what the drive has asked of its motor, not what that did
   std::string pointer;
   /// What this object counts in, where it stands for the quantity.
   [[nodiscard]] const std::string& unit_of(const Object& object) const;

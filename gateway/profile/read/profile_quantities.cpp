@@ -145,6 +145,9 @@ void read_quantities(Reading& reading) {
         reading.each_meaning(name, [&](const Object& object) { check_object(reading, out, object); });
     read_bits(reading, *node, out);
     read_limits(reading, *node, out);
+    out.commanded = flag_in(*node, "commanded", false);
+    if (out.commanded && out.quantity != Quantity::position_actual)
+      reading.fault(pointer_to(out.pointer, "commanded"), "only position_actual can be said to be commanded");
     reading.profile.quantities.push_back(std::move(out));
   }
 }

@@ -30,6 +30,7 @@ struct ResolveAxis {
   std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
   LeaseRules lease;
+  model::WatchRules watch;
   Duration jog_timeout = std::chrono::milliseconds(500);
   std::string motor;  ///< "A", "B": which of the drive's motors; empty: its place in the list
 };

@@ -169,6 +169,7 @@ class AxisQuantities {
     // What cannot be read back is no quantity, except where writing is all there is to it.
     if (!out.writable && !def.readable) return std::nullopt;
     if (row.quantity == Quantity::homing_method) translate(out);
+    if (row.quantity == Quantity::position_actual) model_.position_commanded = spec.commanded;
     if (row.writable) limit(row, spec, object, def, out);
     if (!out.scaled) {
       out.recipe.raw = numbers_of_write(row, object, def);

@@ -155,6 +155,7 @@ void resolve_state(Resolving& r, AxisSlot slot) {
   axis.units_per_rev = input.units_per_rev;
   axis.rated_speed = rated_speed(r, slot);
   axis.lease = input.lease;
+  axis.watch = input.watch;
   axis.jog_timeout = input.jog_timeout;
   axis.homing_timeout = input.homing_timeout;
   axis.homing_method = input.homing_method;

@@ -187,6 +187,35 @@ TEST(Check, WarnsOfMovesThatNoLimitReaches) {
   expect_warning_of_own_speed(Command::move_absolute, Quantity::profile_velocity, "moves", "profile_velocity");
 }
 
+TEST(Check, SaysWhatIsWatchedAndWhereNothingCanBe) {
+  LoadedConfig loaded = one_axis();
+  model::AxisModel& model = loaded.models[0][0].axes[0];
+  const auto binds = [&](Quantity quantity) {
+    model.binding_of[static_cast<std::size_t>(quantity)] = static_cast<std::int16_t>(model.bindings.size());
+    model.bindings.emplace_back().quantity = quantity;
+  };
+  EXPECT_THAT(check::report(loaded).text,
+              HasSubstr("watch           NONE: the drive tells neither position nor velocity\n"));
+  binds(Quantity::velocity_actual);
+  EXPECT_THAT(check::report(loaded).text,
+              HasSubstr("watch           unexpected above 10 rpm, 1000 ms after a motion: alarm; "
+                        "against a stop or a disable that stop once more\n"));
+  binds(Quantity::position_actual);
+  model.watch.reaction = model::WatchReaction::stop;
+  EXPECT_THAT(check::report(loaded).text,
+              AllOf(HasSubstr("unexpected above 0.1 turns of the motor, 1000 ms after a motion: "
+                              "alarm and quick stop; against"),
+                    Not(HasSubstr("(units off)"))));
+  model.watch.reaction = model::WatchReaction::off;
+  model.watch.units = false;
+  EXPECT_THAT(check::report(loaded).text,
+              AllOf(HasSubstr("a motion: against a stop or a disable alone: alarm, and that"),
+                    HasSubstr("velocity is not held against position (units off)\n")));
+  model.position_commanded = true;
+  EXPECT_THAT(check::report(loaded).text,
+              HasSubstr("watch           NONE: its position is only what the drive has commanded"));
+}
+
 TEST(Check, RepeatsTheWarnings) {
   LoadedConfig loaded = one_axis();
   loaded.warnings.push_back("gateway.json: /modbus_tcp/0/listen: everybody may read");

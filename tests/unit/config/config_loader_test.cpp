@@ -94,6 +94,7 @@ TEST_F(ConfigLoader, FillsInEveryDefault) {
   EXPECT_EQ(axis.lease.on_expiry, LeaseAction::quick_stop);
   EXPECT_EQ(axis.lease.renew, LeaseRenewal::any);
   EXPECT_EQ(axis.jog_timeout, milliseconds(500));
+  EXPECT_EQ(axis.watch, model::WatchRules{});
   EXPECT_EQ(axis.motor, "");
   EXPECT_FALSE(axis.vertical);
   EXPECT_THAT(loaded.warnings, IsEmpty());
@@ -164,6 +165,23 @@ TEST_F(ConfigLoader, HandsTheLeaseAndTheJogTimeToTheDrive) {
   EXPECT_EQ(axis.lease.on_expiry, LeaseAction::none);
   EXPECT_EQ(axis.lease.renew, LeaseRenewal::write);
   EXPECT_EQ(axis.jog_timeout, milliseconds(250));
+}
+
+TEST_F(ConfigLoader, HandsTheWatchToTheDrive) {
+  const auto watched = [this](const std::string& watch) {
+    return load_good(one_drive("", "", "", R"(, "watch": )" + watch)).models.at(0).at(0).axes.at(0);
+  };
+  const model::AxisModel axis =
+      watched(R"({"travel_rev": 0.25, "settle_ms": 2000, "reaction": "stop", "units": "off"})");
+  EXPECT_EQ(axis.watch.travel, Rational(1, 4));
+  EXPECT_EQ(axis.watch.settle, milliseconds(2000));
+  EXPECT_EQ(axis.watch.reaction, model::WatchReaction::stop);
+  EXPECT_FALSE(axis.watch.units);
+  EXPECT_FALSE(axis.position_commanded);
+  model::WatchRules rules;
+  EXPECT_EQ(watched("{}").watch, rules);
+  rules.reaction = model::WatchReaction::off;
+  EXPECT_EQ(watched(R"({"reaction": "off", "units": "on"})").watch, rules);
 }
 
 TEST_F(ConfigLoader, AKeyThatALeaseDoesNotNameHasItsDefault) {

@@ -74,12 +74,12 @@ TEST_F(WayOut, ATargetMovesWhereTheDriveFollowsItAndIsEnabled) {
 
 TEST_F(WayOut, AnEnablePassesForWhoeverHasAskedForItAfterTheNewestStop) {
   shows(kDisabled, 1, 6);
-  record.stop();
+  record.stop(record.accepted());
   const auto after = record.now();
   EXPECT_EQ(enable_of({.asked = after, .begins = true}), Errc::ok);
   EXPECT_EQ(enable_of({.asked = after}), Errc::state_unsuitable) << "a parameter's batch asks for no torque";
   EXPECT_EQ(enable_of({}), Errc::state_unsuitable) << "neither does the gateway itself";
-  record.stop();
+  record.stop(record.accepted());
   EXPECT_EQ(enable_of({.asked = after, .begins = true}), Errc::dropped_by_stop);
 }
 

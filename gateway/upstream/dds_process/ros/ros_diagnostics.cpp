@@ -21,7 +21,11 @@ enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2, kStale = 3 };
 constexpr std::uint8_t kLinkUnknown = 0, kLinkSetup = 1, kLinkOnline = 2, kLinkSuspect = 3;
 constexpr std::uint8_t kErrorStop = 6;
 constexpr std::uint8_t kGatewayRunning = 1;
-constexpr std::uint32_t kIdentityMismatch = 1U << 2U, kDuplicateNode = 1U << 8U, kProfileMismatch = 1U << 12U;
+constexpr std::uint32_t kErrors = 1U << 2U      // identity_mismatch
+                                  | 1U << 8U    // duplicate_node
+                                  | 1U << 12U   // profile_mismatch
+                                  | 1U << 13U   // unexpected_motion
+                                  | 1U << 14U;  // units_disagree
 constexpr std::uint8_t kBusUp = 1;
 
 void add(Status& status, const char* key, std::string value) {
@@ -38,7 +42,7 @@ void add(Status& status, const char* key, double value) {
 std::uint8_t level_of(const StateRecord& axis) {
   if (axis.link_state == kLinkUnknown) return kStale;
   if (axis.link_state > kLinkSuspect || axis.axis_state == kErrorStop || axis.error_code != 0) return kError;
-  if ((axis.alarms & (kIdentityMismatch | kDuplicateNode | kProfileMismatch)) != 0) return kError;
+  if ((axis.alarms & kErrors) != 0) return kError;
   return axis.link_state == kLinkOnline && axis.alarms == 0 ? kOk : kWarn;
 }
 
