@@ -97,6 +97,8 @@ std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, c
 
 // Whoever has planned it: by what it would do to each motor that it reaches.
 bool Drive::may_leave(const bus::Exchange& exchange, const bus::Arbiter::Grant& grant) {
+  // A bring-up that would enable gets no further, and does not spin.
+  constexpr Duration kHeldBackPause = std::chrono::milliseconds(500);
   if (exchange.access != bus::Access::write) return true;
   const model::ObjectId object = model_.find(exchange.object);
   if (object == model::kNoObject) return true;
@@ -119,6 +121,8 @@ bool Drive::may_leave(const bus::Exchange& exchange, const bus::Arbiter::Grant& 
       on_wire_.axis->on_job_ended(grant.id, code);
     else if (on_wire_.keeps_alive)
       control_.failed(*on_wire_.keeps_alive, turn_.now);
+    else if (grant.id != 0)
+      bus_.wait(grant.id, turn_.now + kHeldBackPause);
     return false;
   }
   return true;
