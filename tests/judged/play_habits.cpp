@@ -207,6 +207,7 @@ void Play::be_commanded_by_another(const Step& step) {
   if (frames.empty() || !plant_.stage.gateway_runs() || !wire_whole_ || over()) return;
   begin_trouble();
   watches_->line_is_troubled(true);
+  another_master_ = true;
   outcome_.story.push_back(stamp() + ": another master: " + text(frames));
   for (const ForeignFrame& frame : frames) {
     contract_->commanded_by_another();

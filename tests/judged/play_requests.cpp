@@ -197,6 +197,7 @@ Shown Play::shown_by(std::vector<std::uint16_t> words) const {
   return {.words = std::move(words),
           .low_word_first = plant_.listener.low_word_first,
           .float_numbers = plant_.listener.float_numbers,
+          .alone = !another_master_,
           .statusword_tells = is_cia402(program_.subject)};
 }
 

@@ -127,6 +127,7 @@ class Play {
   std::set<std::int64_t> ids_{0};                 ///< of commands, that anybody has written
   std::set<std::size_t> looks_at_once_;           ///< clients whose move was just answered
   bool wire_whole_ = true;
+  bool another_master_ = false;  ///< has spoken to the drive
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;
   std::int64_t online_since_ms_ = -1;

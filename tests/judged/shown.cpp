@@ -61,7 +61,7 @@ std::optional<std::string> wrong_in(const Shown& shown, std::size_t client, Cont
   // say.
   constexpr unsigned kBitOfUnexpectedMotion = 13, kBitOfUnitsDisagree = 14;
   for (const unsigned watched : {kBitOfUnexpectedMotion, kBitOfUnitsDisagree})
-    if (bit_of(shown.wide(kAlarms), watched))
+    if (shown.alone && bit_of(shown.wide(kAlarms), watched))
       return "alarm " + std::to_string(watched) + " is shown of a drive that obeys";
   // 3.2 Unknown: "axis_state 7 unknown while link_state is not 2 or 3"; 3.2: "statusword and discrete inputs 0..10 read
   // 0".

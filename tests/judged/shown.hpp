@@ -18,6 +18,7 @@ struct Shown {
   std::vector<std::uint16_t> words{};
   bool low_word_first = false;
   bool float_numbers = false;
+  bool alone = true;             ///< no other master has spoken to the drive
   bool statusword_tells = true;  ///< whether it is enabled; a virtual axis tells what it was told
 
   /// In 1/10000 turn, and in 0.001 rpm. Only where they are valid.
