@@ -159,17 +159,17 @@ void Gateway::client_gone(ClientId client) {
 
 bool Gateway::holds(AxisNumber axis, Quantity quantity, std::int64_t value) const {
   if (axis > kMaxAxisNumber || places_[axis].drive == nullptr) return false;
-  return places_[axis].drive->axis(places_[axis].slot).holds(quantity, value);
+  return places_[axis].drive->axis(places_[axis].slot).admission().holds(quantity, value);
 }
 
 bool Gateway::owner_asks(AxisNumber axis, ClientId client, Quantity quantity, std::int64_t value) const {
   if (axis > kMaxAxisNumber || places_[axis].drive == nullptr) return false;
-  return places_[axis].drive->axis(places_[axis].slot).owner_asks(client, quantity, value);
+  return places_[axis].drive->axis(places_[axis].slot).admission().owner_asks(client, quantity, value);
 }
 
 std::int32_t Gateway::set_position_value(AxisNumber axis) const {
   if (axis > kMaxAxisNumber || places_[axis].drive == nullptr) return 0;
-  return places_[axis].drive->axis(places_[axis].slot).set_position_value();
+  return places_[axis].drive->axis(places_[axis].slot).core().set_position_value;
 }
 
 const drive::Drive* Gateway::drive_of(AxisNumber axis) const {

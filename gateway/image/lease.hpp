@@ -37,6 +37,8 @@ struct ClientLife {
   /// When its connection was opened, the oldest of those that an address has. None: of a DDS writer, whose origin is
   /// one program.
   std::optional<Instant> opened{};
+  /// Another writer of its program, whose leases are its own as if that one had gone. 0: none.
+  ClientId goes_on_for = 0;
   bool is_address = false;  ///< listener option "client": "address": a host, with all its connections
   /// Of a DDS writer: OWNERSHIP_STRENGTH (DDS 1.4, 2.2.3.10). A stronger one takes an axis from a weaker one.
   std::optional<std::int32_t> strength{};
@@ -58,6 +60,7 @@ struct ClientLife {
 /// It can be the gone owner's program, come back. One that was connected while the owner still asked is another program
 /// at its address.
 [[nodiscard]] inline bool may_be_back_as(const ClientLife& client, const ClientLife& owner) {
+  if (client.goes_on_for != 0 && client.goes_on_for == owner.id) return true;
   return same_origin_and_role(client, owner) && !owner.connected &&
          (!client.opened || *client.opened >= owner.last_request);
 }

@@ -13,7 +13,6 @@ LARGER = {
     "axisgate::commands::ManualPlan": (51, 30),
     "axisgate::bus::Bus": (37, 19),
     "axisgate::can::SocketCanLink": (18, 25),
-    "axisgate::drive::Axis": (111, 27),
     "axisgate::drive::AxisCore": (28, 20),
     "axisgate::drive::BringUp": (30, 23),
     "axisgate::drive::CommandSequence": (47, 19),

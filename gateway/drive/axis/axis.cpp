@@ -11,27 +11,51 @@
 #include "gateway/model/loss.hpp"
 
 namespace axisgate::drive {
+namespace {
+
+// What might still happen is withdrawn before the answer, and the answer is not late for it.
+Instant decide_by(const WriteBatch& batch, Instant now) {
+  constexpr Duration kWithdrawing = std::chrono::milliseconds(100);
+  const bool withdrawable = batch.command == Command::enable || batch.mode || needs_ready(batch.command);
+  if (!withdrawable || batch.answer_by == kNever || batch.answer_by <= now) return batch.answer_by;
+  return batch.answer_by - std::min(kWithdrawing, (batch.answer_by - now) / 4);
+}
+
+/// "Done" is up to 2 s away by the contract (command 12), later than a client's usual deadline. A long object takes
+/// many exchanges, and a client that asks for one is told to wait (43/13).
+void lengthen(WriteBatch& batch, Instant now) {
+  constexpr Duration kSaving = std::chrono::milliseconds(2500), kLongObject = std::chrono::seconds(5);
+  if (batch.command == Command::save_parameters) batch.answer_by = std::max(batch.answer_by, now + kSaving);
+  if (batch.object && batch.object->size == 0) batch.answer_by = std::max(batch.answer_by, now + kLongObject);
+}
+
+// A single row that is refused by a limit has it as detail, in the row's own units; a block has the row there.
+void name_limit(const AxisCore& core, const WriteBatch& batch, BatchResult& result) {
+  if (result.outcome.code != Errc::bad_value) return;
+  const auto passed = passed_limit(core, batch);
+  if (!passed) return;
+  result.outcome.detail = static_cast<std::uint32_t>(passed->limit);
+  result.limit = limit_text(core, *passed);
+}
+
+}  // namespace
 
 Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
            AxisHost& host)
-    : host_(host),
-      image_(image),
-      slot_(slot),
+    : image_(image),
       core_{drive, drive.axes[slot], store, turn, Motion{drive.axes[slot].velocity_lag, image.record}},
-      shown_(core_, image_, host_),
-      ownership_(image.lease, drive.axes[slot].lease),
-      watch_(core_, host_) {
+      shown_(core_, image_, host),
+      guard_(image.lease, drive.axes[slot].lease),
+      events_(core_, image_, guard_, accepted_, host),
+      admission_(core_, image_, guard_, accepted_, events_),
+      jog_(core_, image_, guard_.jog()),
+      watch_(core_, host),
+      signs_(core_, watch_, guard_, host),
+      queue_(core_, slot, host, *this) {
   core_.loss_stop_ms = model::loss_stop_ms(drive, std::nullopt);
 }
 
-bool Axis::holds(Quantity quantity, std::int64_t value) const {
-  if (quantity == Quantity::mode)
-    return core_.model.mode != model::kNoObject && core_.store[core_.model.mode].cached &&
-           core_.mode_in_force() == value;
-  const model::Binding* binding = core_.model.binding(quantity);
-  if (binding == nullptr || binding->object == model::kNoObject || !core_.store[binding->object].cached) return false;
-  return core_.value(quantity) == value;
-}
+// --- What its drive has found ----------------------------------------------------------------------------------------
 
 void Axis::set_alarm(AxisAlarm alarm, bool on) {
   core_.alarms = on ? core_.alarms | bit(alarm) : core_.alarms & ~bit(alarm);
@@ -49,10 +73,9 @@ void Axis::on_bring_up() {
   core_.mode_chosen = false;
   accepted_.forget_parameters();
   core_.fault.forget_emergency();
-  reference_invalidated_ = false;
+  signs_.on_bring_up();
   core_.homed = false;
   core_.counter_wrapped = false;
-  counted_.reset();
   // What was not held before is not held until it is read.
   if (core_.loss_stop_ms != kGoesOn) core_.loss_stop_ms = model::loss_stop_ms(core_.drive, std::nullopt);
   on_unreachable();
@@ -71,81 +94,72 @@ void Axis::on_bring_up() {
     core_.begin_mode();
 }
 
-// --- Taking a write batch --------------------------------------------------------------------------------------------
+// What was accepted stays what it is in register units; the drive's numbers for it are others now.
+void Axis::on_scale() {
+  shown_.show_model();
+  watch_.renumbered();
+  core_.motion.scale_changed();
+  const auto raw_of = [this](const auto& each) {
+    return core_.model.binding(each.second.quantity)->to_raw(each.second.value, core_.object(each.first));
+  };
+  // What the drive cannot hold any more is forgotten: what it holds is held against the limits.
+  std::erase_if(core_.accepted_speeds, [&](const auto& each) { return !raw_of(each); });
+  for (auto& each : core_.accepted_speeds) each.second.raw = *raw_of(each);
+}
 
-Errc Axis::link_admits(bool stop, bool reads_alone) const {
-  const bool unlike_profile = core_.alarm(AxisAlarm::profile_mismatch);
-  const bool another = unlike_profile || core_.alarm(AxisAlarm::identity_mismatch);
-  switch (core_.turn.link) {
-    case LinkState::online:
-    case LinkState::suspect:
-      // A drive that is not the configured one is read-only.
-      return another && !stop && !reads_alone ? Errc::identity_mismatch : Errc::ok;
-    case LinkState::setup:
-    case LinkState::unknown:
-      // Nothing is known of it yet, and it may be running: a stop is worth its try. What a device is that refuses what
-      // its profile needs, a person finds out by reading.
-      return stop || (unlike_profile && reads_alone) ? Errc::ok : Errc::still_in_setup;
-    case LinkState::offline:
-    case LinkState::link_down:
-      break;
+// By its state, its position and its velocity a motion is seen to end, to stand and to keep within its limits.
+void Axis::on_blind(model::ObjectId object) {
+  const auto gives = [&](Quantity quantity) {
+    const model::Binding* binding = core_.model.binding(quantity);
+    return binding != nullptr && binding->object == object;
+  };
+  const bool shows = core_.model.needs_for_state(object) || gives(Quantity::position_actual) ||
+                     (core_.model.moving ? core_.model.moving->object == object : gives(Quantity::velocity_actual));
+  if (!shows) return;
+  guard_.blind(core_.object(object).name, seen());
+  settle();
+}
+
+void Axis::on_adopted() {
+  const Ownership& ownership = guard_.ownership();
+  if (!core_.facts().enabled() || ownership.owner() || !ownership.rules().on) return;
+  guard_.adopted(core_.turn.now);
+  settle();
+}
+
+void Axis::on_client_gone(ClientId client) {
+  const Ownership& ownership = guard_.ownership();
+  if (!ownership.rules().on) {
+    guard_.client_gone(client, seen());
+    return settle();
   }
-  return Errc::offline;
+  if (ownership.is_owner(client))
+    events_.owner(ownership.owner()->name + (ownership.owner()->strength ? " is gone" : " has closed its connection") +
+                  ": its lease goes on until it runs out");
 }
 
-// Two panels pressing the same stop need it on the wire once. What else stands beside one is not the other's result;
-// and what was asked between the two, an enable perhaps, the later stop must end: it is a bus job of its own.
-bool Axis::join_stop(const WriteBatch& batch, BatchCallback& on_result) {
-  if (!stops_alone(batch)) return false;
-  for (auto newest = pending_.rbegin(); newest != pending_.rend(); ++newest) {
-    Pending& p = *newest;
-    const WriteBatch& waiting = p.command_sequence->batch();
-    if (!p.command_sequence->is_stop()) return false;
-    if (p.command_sequence->begun() || p.callbacks.size() >= kMaxJoined) continue;
-    if (p.refusal != Errc::ok || !stops_alone(waiting) || waiting.command != batch.command ||
-        waiting.controlword != batch.controlword)
-      continue;
-    p.callbacks.push_back({std::move(on_result), kNever, batch.answer_by});
-    return true;
-  }
-  return false;
-}
+// --- Carrying it out -------------------------------------------------------------------------------------------------
 
-void Axis::accept_stop(const WriteBatch& batch) {
-  core_.motion.stop(stop_latches(core_, batch), core_.turn.now);
-  core_.motion.record().stopped(batch.client);
-  for (Pending& p : pending_) {
-    if (p.stopped_by) continue;
-    p.stopped_by = batch.client;
-    if (batch.life) p.stopped_by_name = batch.life->name;
-  }
-  end_jog();
-  owe(batch);
-}
-
-void Axis::show_latest(const WriteBatch& batch, const Outcome& outcome) {
-  image_.latest = {command_result(outcome.code), outcome.detail, batch.command_id};
-}
-
-BatchResult Axis::refuse(const WriteBatch& batch, Errc code) {
+BatchResult Axis::refuse(const WriteBatch& batch, Errc code, bool shown) {
   BatchResult result{.outcome = refusal(code), .refused_row = refused_row(core_, batch, code)};
-  name_limit(batch, result);
+  name_limit(core_, batch, result);
   const Outcome& outcome = result.outcome;
-  if (!batch.object && command_result(code) != CommandResult::none) show_latest(batch, outcome);
-  tell_refused(batch, result);
+  if (shown && !batch.object && command_result(code) != CommandResult::none)
+    image_.latest = {command_result(code), outcome.detail, batch.command_id};
+  events_.refused(batch, result);
   return result;
 }
 
-// A single row that is refused by a limit has it as detail, in the row's own units; a block has the row there.
-void Axis::name_limit(const WriteBatch& batch, BatchResult& result) const {
-  if (result.outcome.code != Errc::bad_value) return;
-  const auto passed = passed_limit(core_, batch);
-  if (!passed) return;
-  result.outcome.detail = static_cast<std::uint32_t>(passed->limit);
-  result.limit = limit_text(core_, *passed);
+void Axis::accept(const WriteBatch& batch) {
+  if (batch.life && resets_fault(batch)) shown_.reset_asked(batch.life->name);
+  watch_.accepted(batch);
+  if (!batch.jogs)
+    for (const Setpoint& sp : batch.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.record().now());
+  if (batch.mode) accepted_.note(Quantity::mode, *batch.mode, core_.motion.record().now());
 }
 
-std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result) {
+std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result,
+                                           const OwnStop* own) {
   auto [batch, code] = as_quantities(core_, asked);
   if (asks_for_missing_halt(core_, batch)) {
     batch.controlword.reset();
@@ -163,211 +177,152 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
                                    [](const Setpoint& sp) { return sp.quantity == Quantity::target_velocity; }))
     batch.setpoints.push_back(
         {Quantity::target_velocity, core_.velocity_beside_jog->value, core_.velocity_beside_jog->exact, true});
+  const bool shown = own == nullptr || own->shown;
   Pending pending;
   pending.refusal = refusal;
   pending.jogs = batch.jogs;
   if (code != Errc::ok) {
     // A stop is carried out whatever nonsense stands beside it; the answer tells of the nonsense.
-    const Errc of_link = code == Errc::still_in_setup ? link_admits(stop, false) : Errc::ok;
+    const Errc of_link = code == Errc::still_in_setup ? admission_.link_admits(stop, false) : Errc::ok;
     if (!stop) return refuse(asked, of_link == Errc::ok ? code : of_link);
     pending.refusal = code;
     pending.refused_row = refused_row(core_, batch, code);
     batch = stop_alone(batch);
-    if (const Errc of_stop = admit(core_, batch); of_stop != Errc::ok) return refuse(asked, of_stop);
+    if (const Errc of_stop = admit(core_, batch); of_stop != Errc::ok) return refuse(asked, of_stop, shown);
   }
   // Accepted in every state: the latch is set even where nothing can be sent.
-  if (stop) accept_stop(batch);
+  if (stop && !(own != nullptr && own->again)) accept_stop(batch);
   AxisRecord& record = core_.motion.record();
   pending.accepted = stop ? record.newest_stop() : record.accepted();
-  if (const Errc of_link = link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
+  if (const Errc of_link = admission_.link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
     if (stop) publish();
-    return refuse(asked, of_link);
+    return refuse(asked, of_link, shown);
   }
   // 3.5: owned from the first accepted write; who only waits for the client's return is taken by any write.
-  pending.claims_when_begun = accepts_nothing(core_, batch) && !ownership_.waits_for(batch.life, batch.all_zero);
-  if (!pending.claims_when_begun) claim(batch);
-  if (stop && pending.refusal == Errc::ok && join_stop(batch, on_result)) {
+  pending.claims_when_begun =
+      accepts_nothing(core_, batch) && !guard_.ownership().waits_for(batch.life, batch.all_zero);
+  if (!pending.claims_when_begun) admission_.claim(batch);
+  if (own == nullptr) settle();
+  if (stop && pending.refusal == Errc::ok && queue_.join_stop(batch, on_result)) {
     publish();
     return std::nullopt;
   }
-  if (pending_.empty() && nothing_to_send(core_, batch)) {
+  if (shown && queue_.pending().empty() && nothing_to_send(core_, batch)) {
     // The wire is not needed: a PLC that writes the same block for ever is answered at once.
     accept(batch);
     remember_setpoints(core_, batch);
     core_.mode_chosen = core_.mode_chosen || batch.mode.has_value();
-    show_latest(batch, {});
-    publish();
-    return BatchResult{};
+    return nothing_left(batch);
   }
-  // "Done" is up to 2 s away by the contract (command 12), later than a client's usual deadline.
-  constexpr Duration kSaving = std::chrono::milliseconds(2500);
-  if (batch.command == Command::save_parameters) batch.answer_by = std::max(batch.answer_by, core_.turn.now + kSaving);
-  // A long object takes many exchanges, and a client that asks for one is told to wait (43/13).
-  constexpr Duration kLongObject = std::chrono::seconds(5);
-  if (batch.object && batch.object->size == 0)
-    batch.answer_by = std::max(batch.answer_by, core_.turn.now + kLongObject);
-  pending.by_mailbox = asked.object.has_value();
+  lengthen(batch, core_.turn.now);
+  pending.by_mailbox = asked.object.has_value() || !shown;
   pending.command_sequence = std::make_unique<CommandSequence>(core_, batch, stop, asked.object && !batch.object);
   pending.starts_motion = starts_motion(core_, batch);
-  if (pending.starts_motion && !pending.jogs) pending.ends_jog = jog_.pressed();
+  if (pending.starts_motion && !pending.jogs) pending.ends_jog = guard_.jog().pressed();
   pending.start_by = stop ? kNever : batch.start_by;
-  pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(batch)});
-  std::optional<BatchResult> refused;
-  enqueue(std::move(pending), stop, refused);
-  return refused;
-}
-
-void Axis::enqueue(Pending pending, bool stop, std::optional<BatchResult>& refused) {
-  const WriteBatch& batch = pending.command_sequence->batch();
-  bus::BusJob job = job_for(core_, batch, stop);
-  job.axis = slot_;
-  const AxisHost::Queued queued = host_.queue(std::move(job));
-  if (queued.code != Errc::ok) {
-    refused = refuse(batch, queued.code);
+  pending.callbacks.push_back({std::move(on_result), pending.start_by, decide_by(batch, core_.turn.now)});
+  const auto [unqueued, joined] = queue_.push(std::move(pending), stop);
+  if (unqueued != Errc::ok) {
     if (stop) publish();
-    return;
+    return refuse(batch, unqueued, shown);
   }
-  if (queued.joined) {
-    Pending* shared = pending_.find(queued.id);
-    if (shared == nullptr || shared->callbacks.size() >= kMaxJoined) {
-      refused = refuse(batch, Errc::queue_full);
-    } else {
-      shared->start_by = std::max(shared->start_by, pending.start_by);
-      shared->callbacks.push_back(std::move(pending.callbacks.front()));
-    }
-    return;
-  }
-  pending.id = queued.id;
+  if (joined) return std::nullopt;
   accept(batch);
-  const bool drives = std::any_of(batch.setpoints.begin(), batch.setpoints.end(), [](const Setpoint& sp) {
+  const bool starts = starts_motion(core_, batch);
+  const bool drives = std::ranges::any_of(batch.setpoints, [](const Setpoint& sp) {
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
-  if (pending.starts_motion || drives) {
-    motion_by_ = {batch.client, batch.life};
-  }
-  if (!pending.by_mailbox) image_.latest = {CommandResult::pending, 0, batch.command_id};
-  if (pending.starts_motion) core_.motion.mask_target_reached();
-  pending_.push_back(std::move(pending));
+  if (starts || drives) guard_.commanded(batch.client, batch.life);
+  if (shown && !asked.object) image_.latest = {CommandResult::pending, 0, batch.command_id};
+  if (starts) core_.motion.mask_target_reached();
   publish();
-}
-
-// --- Carrying it out -----------------------------------------------------------------------------------------------
-
-std::optional<bus::Exchange> Axis::on_grant(bus::JobId id) {
-  Pending* pending = pending_.find(id);
-  if (pending == nullptr) return std::nullopt;
-  if (ends_with_gateway(*pending)) {
-    end_begun(*pending);
-    return std::nullopt;
-  }
-  if (!pending->command_sequence->is_stop() && pending_.waits_for_stop(*pending)) {
-    host_.job_waits(id, core_.turn.now + kStopsFirst);
-    return std::nullopt;
-  }
-  if (!claims_late(*pending)) return std::nullopt;
-  hold_rest(*pending);
-  const auto move = pending->command_sequence->granted();
-  note_commanded(*pending);
-  note_begun(*pending, false);
-  if (move.kind == CommandSequence::Move::Kind::exchange) return move.exchange;
-  if (move.kind == CommandSequence::Move::Kind::wait) {
-    host_.job_waits(id, move.until);
-  } else {
-    complete(id, pending->command_sequence->result());
-  }
   return std::nullopt;
 }
 
-bool Axis::passes_resync(bus::JobId id) {
-  Pending* pending = pending_.find(id);
-  if (pending == nullptr) return false;
-  return pending->command_sequence->passes_resync();
+Errc Axis::may_go_on(Pending& pending) {
+  const Errc code = admission_.judge_again(pending);
+  settle();
+  return code;
 }
 
-void Axis::on_result(bus::JobId id, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {
-  Pending* pending = pending_.find(id);
-  if (pending == nullptr) return;
-  pending->command_sequence->on_result(result, sent_at, trusted);
-  carry_on(*pending);
+BatchResult Axis::on_ended(Pending& pending) {
+  const CommandSequence& sequence = *pending.command_sequence;
+  const WriteBatch& batch = sequence.batch();
+  BatchResult result = sequence.result();
+  on_begun(pending, result.outcome.code == Errc::ok);
+  on_stop_over(pending, true);
+  if (jog_.finished(pending, result.outcome.code))
+    guard_.halt_jog("jog: another command has taken its mode and failed: halted");
+  watch_.finished(batch, result.outcome.code, sequence.begun());
+  if (!queue_.pending().starts_motion()) core_.motion.unmask_target_reached();
+  result.stop = sequence.began_as_stop() ? pending.accepted : 0;
+  result.refused_row = refused_row(core_, batch, result.outcome.code);
+  if (result.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
+    result.outcome = {pending.refusal, 0};
+    result.refused_row = pending.refused_row;
+  }
+  name_limit(core_, batch, result);
+  const Errc code = result.outcome.code;
+  if (code != Errc::ok) {
+    forget_accepted_speeds(core_, batch);
+    // It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
+    if (!sequence.begun()) accepted_.forget(batch);
+    if (resets_fault(batch)) shown_.reset_failed();
+  }
+  if (!pending.by_mailbox) image_.latest = {command_result(code), result.outcome.detail, batch.command_id, result.stop};
+  events_.ended(pending, result.outcome);
+  if (code == Errc::timed_out && batch.command == Command::enable && sequence.commanded()) {
+    // Its acknowledgement was lost, and its client was told that nobody knows. A set-point that was lost beside it, on
+    // an axis that was enabled all the time, is no enable.
+    guard_.late_enable().unknown(core_.turn.now);
+  }
+  if (code != Errc::not_reached) return result;
+  events_.not_reached(pending);
+  if (const Command stop = sequence.withdrawn_by(); stop != Command::none) withdraw(pending, stop, result);
+  return result;
 }
 
-void Axis::carry_on(Pending& pending) {
-  hold_rest(pending);
-  const auto move = pending.command_sequence->advance();
-  if (move.kind == CommandSequence::Move::Kind::finished) {
-    complete(pending.id, pending.command_sequence->result());
-    return;
-  }
-  if (ends_with_gateway(pending)) return end_begun(pending);
-  if (move.kind == CommandSequence::Move::Kind::wait) host_.job_waits(pending.id, move.until);
-  if (!pending.command_sequence->stop_is_over()) return;
-  note_stop(pending, false);
-  // What commands waited behind this stop, and a later one drops it, as it drops whatever commands and waits.
-  if (pending.stopped_by && asks_to_begin(pending.command_sequence->batch()))
-    return on_job_ended(pending.id, Errc::dropped_by_stop);
-  // The stop is done; the rest of its write batch goes on where it stands, and has no precedence any more.
-  bus::BusJob rest = job_for(core_, pending.command_sequence->batch(), false);
-  rest.read.reset();
-  rest.setpoints_only = false;
-  rest.start_by = kNever;
-  if (!host_.job_goes_on_as(pending.id, rest)) {
-    complete(pending.id, {{Errc::queue_full, 0}, 0, 0});
-    return;
-  }
-  pending.command_sequence->stop_was_handed_over();
+// --- Each turn -------------------------------------------------------------------------------------------------------
+
+void Axis::on_time() {
+  queue_.on_time();
+  settle();
 }
 
-void Axis::on_job_ended(bus::JobId id, Errc code) {
-  Pending* pending = pending_.find(id);
-  if (pending == nullptr) return;
-  CommandSequence& command_sequence = *pending->command_sequence;
-  const bool begun = command_sequence.begun();
-  const bool by_other = pending->stopped_by && *pending->stopped_by != command_sequence.batch().client;
-  if (code == Errc::dropped_by_stop && begun && by_other) code = Errc::stopped_by_other;
-  // Whether something was sent is what tells the two apart, not whether the bus had granted it a turn.
-  if (code == Errc::link_lost && !begun) code = Errc::offline;
-  if (code == Errc::offline && begun) code = Errc::link_lost;
-  command_sequence.abort(refusal(code));
-  complete(id, command_sequence.result());
+void Axis::observe() {
+  const AxisFacts facts = core_.facts();
+  core_.watch_fault();
+  core_.motion.observe(facts, core_.model.homing_timeout);
+  signs_.observe(facts, queue_.pending());
+  set_alarm(AxisAlarm::clamped, std::ranges::any_of(core_.model.bindings, [this](const model::Binding& binding) {
+              return binding.object != model::kNoObject && binding.object != core_.model.controlword &&
+                     core_.store[binding.object].clamped;
+            }));
+  jog_.observe(queue_.pending().jogs(), shown_.cycle());
+  observe_stop();
+  watch_.observe(
+      std::ranges::any_of(queue_.pending(), [](const Pending& p) { return AxisWatch::explains(p.batch()); }));
+  if (const auto stop = watch_.take_stop(); stop && !queue_.closing()) guard_.asks(*stop);
+  const ObjectState& status = core_.store[core_.model.statusword];
+  const LinkState link = core_.turn.link;
+  if (link == LinkState::unknown || link == LinkState::offline || link == LinkState::link_down)
+    on_unreachable();
+  else if (status.known)
+    guard_.shows(model::state_of(static_cast<std::uint16_t>(status.number)), status.exchange,
+                 core_.shows_torque() && core_.facts().moving, seen());
+  if (core_.motion.take_homing_timeout()) guard_.homing_timed_out();
+  settle();
 }
 
-void Axis::complete(bus::JobId id, const BatchResult& result) {
-  const auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.id == id; });
-  if (found == pending_.end()) return;
-  Pending pending = std::move(*found);
-  pending_.erase(found);
-  host_.job_done(id);
-  note_commanded(pending);
-  note_begun(pending, result.outcome.code == Errc::ok);
-  note_stop(pending, true);
-  note_jog(pending, result.outcome.code);
-  watch_.finished(pending.batch(), result.outcome.code, pending.command_sequence->begun());
-  if (!pending_.starts_motion()) core_.motion.unmask_target_reached();
-  BatchResult told = result;
-  told.stop = pending.command_sequence->began_as_stop() ? pending.accepted : 0;
-  told.refused_row = refused_row(core_, pending.command_sequence->batch(), told.outcome.code);
-  if (told.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
-    told.outcome = {pending.refusal, 0};
-    told.refused_row = pending.refused_row;
-  }
-  name_limit(pending.command_sequence->batch(), told);
-  if (told.outcome.code != Errc::ok) {
-    forget_accepted_speeds(core_, pending.command_sequence->batch());
-    if (!pending.command_sequence->begun()) forget_accepted(pending.command_sequence->batch());
-  }
-  if (!pending.by_mailbox) {
-    show_latest(pending.command_sequence->batch(), told.outcome);
-    image_.latest.stop = told.stop;
-  }
-  tell_ended(pending, told.outcome);
-  if (told.outcome.code == Errc::timed_out) watch_enable(*pending.command_sequence);
-  if (told.outcome.code == Errc::not_reached) {
-    tell_not_reached(pending);
-    const Command stop = pending.command_sequence->withdrawn_by();
-    if (stop != Command::none)
-      return withdraw(pending.command_sequence->batch(), stop, told, std::move(pending.callbacks));
-  }
-  if (!pending.callbacks.empty()) due_.push_back({told, std::move(pending.callbacks)});
+Instant Axis::next_deadline() const {
+  return std::min({core_.motion.deadline(), core_.fault.deadline(), guard_.next_deadline(core_.turn.now),
+                   jog_.limit_due(), queue_.next_deadline()});
+}
+
+void Axis::publish() {
+  guard_.ownership().set_armed(core_.turn.link != LinkState::online || model::holds_motor(core_.facts().state));
+  // By whatever way a homing was asked for: from when it is asked until it was seen to be over.
+  shown_.publish(guard_.jog(), core_.motion.running() == MotionKind::homing || queue_.pending().moves_zero());
 }
 
 }  // namespace axisgate::drive

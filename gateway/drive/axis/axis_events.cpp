@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who asked an axis for what, what was refused and why: for log and events.
+#include "gateway/drive/axis/axis_events.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <utility>
 
 #include "gateway/core/words.hpp"
-#include "gateway/drive/axis/axis.hpp"
 #include "gateway/drive/axis/command_text.hpp"
 #include "gateway/drive/plan/admission.hpp"
 
@@ -40,9 +40,8 @@ std::string alarm_against(const AxisCore& core, AxisNumber axis, const WriteBatc
 
 // `carried_out`: what has become of a coil that ends a run, or of a stop beside which something was refused. A stop is
 // everybody's: whoever owns the axis must see who has used that.
-void Axis::tell_asked(const WriteBatch& asked, const WriteBatch& carried_out) {
+void AxisEvents::asked(const WriteBatch& asked, const WriteBatch& carried_out) {
   if (!asked.life || reads_alone(asked)) return;
-  if (resets_fault(asked)) shown_.reset_asked(asked.life->name);
   const auto left_out = telling_.asked(carried_out, core_.turn.now);
   if (!left_out) return;
   WriteBatch shown = asked;
@@ -51,41 +50,38 @@ void Axis::tell_asked(const WriteBatch& asked, const WriteBatch& carried_out) {
   const auto value = target ? accepted_.value(*target, core_.motion.record()) : std::nullopt;
   if (value && !sets(asked, *target)) shown.setpoints.push_back({*target, *value});
   const bool ends_run = asked.command != carried_out.command && is_stop(carried_out.command);
-  const bool foreign = holds_stop(carried_out) && ownership_.owner() && !ownership_.is_owner(asked.client);
+  const bool foreign =
+      holds_stop(carried_out) && guard_.ownership().owner() && !guard_.ownership().is_owner(asked.client);
   const std::string who =
       foreign ? "stopped by " + asked.life->name + ", which does not own the axis" : asked.life->name;
   const std::string how = ends_run ? fmt::format(" ({})", text(carried_out.command)) : std::string();
-  host_.event(
-      image_.number, EventKind::command, static_cast<std::uint32_t>(asked.command),
-      fmt::format("{}: {}{}{}", who, command_text(core_, shown, image_.jog_velocity), how, left_out_text(*left_out)));
+  event(EventKind::command, static_cast<std::uint32_t>(asked.command),
+        fmt::format("{}: {}{}{}", who, command_text(core_, shown, image_.jog_velocity), how, left_out_text(*left_out)));
 }
 
-void Axis::tell_owner(const std::string& what) {
-  if (const auto left_out = telling_.owner(core_.turn.now))
-    host_.event(image_.number, EventKind::lease, 0, what + left_out_text(*left_out));
+void AxisEvents::owner(const std::string& what) {
+  if (const auto left_out = telling_.owner(core_.turn.now)) event(EventKind::lease, 0, what + left_out_text(*left_out));
 }
 
 // --- What became of it -----------------------------------------------------------------------------------------------
 
-void Axis::tell_refused(const WriteBatch& asked, const BatchResult& result) {
+void AxisEvents::refused(const WriteBatch& asked, const BatchResult& result) {
   const Outcome& outcome = result.outcome;
   if (!asked.life || reads_alone(asked) || told_by_its_server(asked, outcome.code)) return;
   const auto left_out = telling_.refused(asked, outcome.code, core_.turn.now);
   if (!left_out) return;
-  const auto owner = ownership_.owner();
+  const auto owner = guard_.ownership().owner();
   const std::string whose = outcome.code == Errc::not_owner && owner ? "; its owner is " + owner->name : std::string();
-  host_.event(
-      image_.number, EventKind::command, static_cast<std::uint32_t>(asked.command),
-      fmt::format("{}: {} is refused: {}{}{}{}{}", asked.life->name, command_text(core_, asked, image_.jog_velocity),
-                  outcome_text(asked, outcome), alarm_against(core_, image_.number, asked, outcome.code),
-                  result.limit.empty() ? result.limit : "; its limit is " + result.limit, whose,
-                  left_out_text(*left_out)));
+  event(EventKind::command, static_cast<std::uint32_t>(asked.command),
+        fmt::format("{}: {} is refused: {}{}{}{}{}", asked.life->name, command_text(core_, asked, image_.jog_velocity),
+                    outcome_text(asked, outcome), alarm_against(core_, image_.number, asked, outcome.code),
+                    result.limit.empty() ? result.limit : "; its limit is " + result.limit, whose,
+                    left_out_text(*left_out)));
 }
 
 // A set-point in whose place a newer one was sent is no news; what was not reached is told with what was awaited.
-void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
+void AxisEvents::ended(const Pending& pending, const Outcome& outcome) {
   const WriteBatch& batch = pending.command_sequence->batch();
-  if (outcome.code != Errc::ok && resets_fault(batch)) shown_.reset_failed();
   if (outcome.code == Errc::ok || outcome.code == Errc::superseded || outcome.code == Errc::not_reached) return;
   if (batch.client == 0 || reads_alone(batch)) return;
   if (pending.refusal == Errc::ok && told_by_its_server(batch, outcome.code)) return;
@@ -95,10 +91,18 @@ void Axis::tell_ended(const Pending& pending, const Outcome& outcome) {
   const bool stopped = outcome.code == Errc::stopped_by_other || outcome.code == Errc::dropped_by_stop;
   const std::string by = stopped && !pending.stopped_by_name.empty() ? ", " + pending.stopped_by_name : std::string();
   const std::string what = batch.jogs ? std::string("jog") : command_text(core_, batch, image_.jog_velocity);
-  host_.event(image_.number, EventKind::command, static_cast<std::uint32_t>(batch.command),
-              fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client",
-                          beside ? "what stood beside " : "", what, outcome_text(batch, outcome),
-                          alarm_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
+  event(EventKind::command, static_cast<std::uint32_t>(batch.command),
+        fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client",
+                    beside ? "what stood beside " : "", what, outcome_text(batch, outcome),
+                    alarm_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
+}
+
+void AxisEvents::not_reached(const Pending& pending) {
+  const WriteBatch& batch = pending.batch();
+  const std::string who = batch.life ? batch.life->name + ": " : std::string();
+  const std::string what = batch.command == Command::none ? "a write" : std::string(text(batch.command));
+  event(EventKind::command, static_cast<std::uint32_t>(batch.command),
+        who + what + " was not reached: " + pending.command_sequence->missed());
 }
 
 }  // namespace axisgate::drive

@@ -23,10 +23,10 @@ void AxisPublisher::measure_cycle() {
   last_statusword_ = statusword_at;
 }
 
-void AxisPublisher::publish(const Jog& jog) {
+void AxisPublisher::publish(const Jog& jog, bool zero_may_move) {
+  if (zero_may_move || zero_moves_) image_.zero_moved = core_.turn.now;
+  zero_moves_ = zero_may_move;
   measure_cycle();
-  core_.watch_fault();
-  core_.motion.observe(core_.facts(), core_.model.homing_timeout);
   AxisImage before = image_;
   before.lease.owner = std::exchange(owner_shown_, image_.lease.owner);  // it changes in the image itself
   image_.link_state = core_.turn.link;

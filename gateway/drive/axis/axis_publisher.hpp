@@ -18,8 +18,8 @@ class AxisPublisher {
 
   /// What does not change with its samples: what it has, its limits.
   void show_model();
-  /// Brings the image up to date.
-  void publish(const Jog& jog);
+  /// Brings the image up to date. `zero_may_move`: a homing or set_position is asked for or under way.
+  void publish(const Jog& jog, bool zero_may_move);
 
   /// The axis has shown a fault until now; a client asks for its reset.
   void reset_asked(const std::string& by);
@@ -41,6 +41,7 @@ class AxisPublisher {
   AxisHost& host_;
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
+  bool zero_moves_ = false;  ///< when it was published last
   std::shared_ptr<const ClientLife> owner_shown_{};
   struct Fault {
     Instant since = kLongAgo;               ///< kLongAgo: there is none

@@ -39,18 +39,6 @@ std::string by(const WriteBatch& batch) { return batch.life ? batch.life->name :
 
 }  // namespace
 
-Command command_of(StopKind stop) {
-  switch (stop) {
-    case StopKind::halt:
-      return Command::halt;
-    case StopKind::quick_stop:
-      return Command::quick_stop;
-    case StopKind::disable:
-      break;
-  }
-  return Command::disable;
-}
-
 AxisWatch::AxisWatch(AxisCore& core, AxisHost& host)
     : core_(core), host_(host), motion_(motion_rules(core.model)), units_(units_rules(core.model)) {}
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gateway/drive/axis/axis_host.hpp"
+#include "gateway/drive/guard/guard.hpp"
 #include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 #include "gateway/drive/watch/motion_watch.hpp"
@@ -16,8 +17,6 @@
 #include "gateway/image/command.hpp"
 
 namespace axisgate::drive {
-
-[[nodiscard]] Command command_of(StopKind stop);
 
 class AxisWatch {
  public:

@@ -4,6 +4,7 @@
 // what would enable or start waits for each stop before it. Never carries one out: the axis does.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,12 @@ struct Pending {
   std::optional<std::uint16_t> refused_row{};
 
   [[nodiscard]] const WriteBatch& batch() const { return command_sequence->batch(); }
+  /// What it asks for begins by then, and no more once all who wait for it are answered.
+  [[nodiscard]] Instant begins_by() const {
+    Instant answered = callbacks.empty() ? kNever : kLongAgo;
+    for (const Waiting& client : callbacks) answered = std::max(answered, client.answer_by);
+    return command_sequence->begun() ? answered : std::min(answered, start_by);
+  }
 };
 
 class PendingBatches : private std::vector<Pending> {

@@ -84,7 +84,7 @@ std::optional<bus::Exchange> Drive::own_exchange() {
 std::optional<bus::Exchange> Drive::exchange_of(const bus::Arbiter::Grant& grant) {
   const bus::JobId id = grant.id;
   Axis* const owner = on_wire_.axis;
-  if (reads_.suspect() && !(owner != nullptr && owner->passes_resync(id))) {
+  if (reads_.suspect() && !(owner != nullptr && owner->queue().passes_resync(id))) {
     on_wire_.becomes_own();
     return resync(id);
   }
@@ -95,7 +95,7 @@ std::optional<bus::Exchange> Drive::exchange_of(const bus::Arbiter::Grant& grant
       on_wire_.becomes_own();
       return read_of(model_, *look);
     }
-    return owner->on_grant(id);
+    return owner->queue().on_grant(id);
   }
   if (id == jobs_.end) return next_of_end();
   if (id == jobs_.cause) return next_of_causes();
@@ -117,7 +117,7 @@ bool Drive::waits_for_chain(const bus::Arbiter::Grant& grant) {
 // The adapter tells the drive; the client whose object it was is told here.
 void Drive::break_chain() {
   for (auto& axis : axes_)
-    if (axis->pending().chain_job() != 0) axis->on_job_ended(axis->pending().chain_job(), Errc::busy);
+    if (axis->pending().chain_job() != 0) axis->queue().on_job_ended(axis->pending().chain_job(), Errc::busy);
 }
 
 // A probe of a drive that is not there: its reply must not be one to something lost long ago.
@@ -200,7 +200,7 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
     }
     if (asked.axis != nullptr && asked.axis->pending().find(asked.job) != nullptr) {
       owned = true;
-      asked.axis->on_result(asked.job, result, asked.read.sent_at, trusted);
+      asked.axis->queue().on_result(asked.job, result, asked.read.sent_at, trusted);
     }
     if (!owned && written != model::kNoObject) on_write_without_owner(exchange, result, trusted);
   }
@@ -279,7 +279,7 @@ void Drive::on_link(bool up) {
 
 void Drive::on_job_ended(const bus::Arbiter::Ending& ending) {
   begin_turn();
-  if (Axis* owner = axis_of(ending.axis)) owner->on_job_ended(ending.id, ending.code);
+  if (Axis* owner = axis_of(ending.axis)) owner->queue().on_job_ended(ending.id, ending.code);
   if (ending.id == jobs_.end) finish_end();
   for (bus::JobId* job : {&jobs_.setup, &jobs_.cause, &jobs_.keep_alive})
     if (ending.id == *job) *job = 0;
@@ -294,7 +294,7 @@ void Drive::on_time() {
 
 void Drive::after_event() {
   bring_up_to_date();
-  for (auto& axis : axes_) axis->call_back();
+  for (auto& axis : axes_) axis->queue().call_back();
   tell_closed();
 }
 
@@ -321,7 +321,7 @@ void Drive::bring_up_to_date() {
   for (auto& axis : axes_) {
     axis->publish();
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core())});
-    if (axis->has_due()) next = turn_.now;
+    if (axis->queue().has_due()) next = turn_.now;
   }
   schedule_causes();
   watch_positions();

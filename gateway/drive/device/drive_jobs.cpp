@@ -24,17 +24,18 @@ bus::JobId Drive::queue_own(bus::Priority priority) {
 // --- What names a fault is read next, before anything but stops ----------------------------------------------------
 
 bool Drive::has_cause_to_read() const {
-  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->cause_to_read().has_value(); });
+  return std::any_of(axes_.begin(), axes_.end(),
+                     [this](const auto& axis) { return axis->faults().next(turn_.now).has_value(); });
 }
 
 // One read for all axes that wait for it.
 std::optional<bus::Exchange> Drive::next_cause() {
   std::optional<model::ObjectId> object;
   for (auto& axis : axes_) {
-    const auto wanted = axis->cause_to_read();
+    const auto wanted = axis->faults().next(turn_.now);
     if (!wanted || (object && wanted != object)) continue;
     object = wanted;
-    axis->cause_asked();
+    axis->faults().asked(turn_.now);
   }
   if (!object) return std::nullopt;
   return read_of(model_, *object);
@@ -49,7 +50,7 @@ std::optional<bus::Exchange> Drive::next_of_causes() {
 // Of a drive that is found faulted, as soon as it is up.
 void Drive::schedule_causes() {
   for (auto& axis : axes_)
-    if (axis->fault_is_over())
+    if (axis->faults().take_over())
       for (const model::ObjectId word : axis->core().causes)
         if (!reads_.tells_state(word)) reads_.hurry(word, turn_.now);
   if (!brought_up() || !has_cause_to_read() || jobs_.cause != 0) return;
@@ -68,8 +69,8 @@ DriveControl::Turn Drive::control_turn() const {
     turn.axes.push_back({.core = axis->core(),
                          .enabling = axis->pending().enables(true),
                          .disabling = axis->pending().disables(),
-                         .stopping = axis->pending().stopping() || axis->owes_stop(),
-                         .live = axis->commands_live()});
+                         .stopping = axis->pending().stopping() || axis->guard().owed().owed(),
+                         .live = axis->guard().ownership().live(turn_.now)});
   return turn;
 }
 
@@ -91,9 +92,18 @@ std::optional<bus::Exchange> Drive::whole_frame(const bus::Exchange& exchange, c
     control_.failed(*on_wire_.keeps_alive, turn_.now);
     return std::nullopt;
   }
-  if (Axis* owner = axis_of(grant.axis)) owner->on_job_ended(grant.id, Errc::state_unsuitable);
+  if (Axis* owner = axis_of(grant.axis)) owner->queue().on_job_ended(grant.id, Errc::state_unsuitable);
   return std::nullopt;
 }
+
+namespace {
+
+std::string_view why_held(Errc code) {
+  if (code == Errc::dropped_by_stop) return "a stop is newer";
+  return code == Errc::never_started ? "it comes too late" : "nobody has asked for it";
+}
+
+}  // namespace
 
 // Whoever has planned it: by what it would do to each motor that it reaches.
 bool Drive::may_leave(const bus::Exchange& exchange, const bus::Arbiter::Grant& grant) {
@@ -107,18 +117,20 @@ bool Drive::may_leave(const bus::Exchange& exchange, const bus::Arbiter::Grant& 
   Sender sender{.keeps = on_wire_.keeps_alive.has_value()};
   if (pending != nullptr) {
     const CommandSequence& sequence = *pending->command_sequence;
-    sender = {.asked = sequence.asked(), .stops = sequence.is_stop(), .begins = asks_to_begin(pending->batch())};
+    sender = {.asked = sequence.asked(),
+              .stops = sequence.is_stop(),
+              .begins = asks_to_begin(pending->batch()),
+              .by = pending->begins_by()};
   }
   const AxisSlot slot = model_.object(object).slot;
   for (auto& axis : axes_) {
     if (slot != kNoAxis && axis != axes_[slot]) continue;
     const Errc code = held_on_way_out(axis->core(), object, number, sender);
     if (code == Errc::ok) continue;
-    axis->on_held_back(fmt::format("{} = {} was held back: {}", model_.object(object).name, number,
-                                   code == Errc::dropped_by_stop ? "a stop is newer" : "nobody has asked for it"),
+    axis->on_held_back(fmt::format("{} = {} was held back: {}", model_.object(object).name, number, why_held(code)),
                        sender.stops);
     if (pending != nullptr)
-      on_wire_.axis->on_job_ended(grant.id, code);
+      on_wire_.axis->queue().on_job_ended(grant.id, code);
     else if (on_wire_.keeps_alive)
       control_.failed(*on_wire_.keeps_alive, turn_.now);
     else if (grant.id != 0)
@@ -146,7 +158,7 @@ Instant Drive::schedule_keep_alive() {
 
 void Drive::close(Closing why, std::function<void()> closed) {
   begin_turn();
-  for (auto& axis : axes_) axis->close();
+  for (auto& axis : axes_) axis->queue().close();
   // A bring-up would arm what is to be disarmed, and start nodes. What it has armed so far is looked at; but only of a
   // drive that was brought up is it known what a reload needs to know.
   if (jobs_.setup != 0) bus_.finish(std::exchange(jobs_.setup, 0));
@@ -160,7 +172,7 @@ void Drive::reopen() {
   begin_turn();
   const bool disarmed = end_.take_back() && brought_up();
   if (jobs_.end != 0) bus_.finish(std::exchange(jobs_.end, 0));
-  for (auto& axis : axes_) axis->reopen();
+  for (auto& axis : axes_) axis->queue().reopen();
   if (disarmed && bring_up_.has_setup()) begin_bring_up(false);
   if (turn_.link == LinkState::unknown) presence_.look_at(turn_.now);  // a bring-up that was not begun meanwhile
   after_event();
@@ -168,8 +180,9 @@ void Drive::reopen() {
 
 // Stops go first, to their end: what a motor does is not known before.
 std::optional<bus::Exchange> Drive::next_of_end() {
-  const bool stops = std::any_of(axes_.begin(), axes_.end(),
-                                 [](const auto& axis) { return !axis->pending().empty() || axis->owes_stop(); });
+  const bool stops = std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) {
+    return !axis->pending().empty() || axis->guard().owed().owed();
+  });
   if (stops) {
     bus_.wait(jobs_.end, turn_.now + DriveEnd::kStopsFirst);
     return std::nullopt;

@@ -102,7 +102,7 @@ void Drive::on_values(const bus::ReplyFields& fields) {
   reads_.take_unsolicited(fields, turn_.now);
   for (auto& axis : axes_) {
     axis->on_samples();
-    if (axis->end_wants_sample()) reads_.hurry_state(axis->core().model, turn_.now);
+    if (axis->core().motion.end_wants_sample(axis->core().facts())) reads_.hurry_state(axis->core().model, turn_.now);
   }
 }
 
@@ -115,7 +115,7 @@ void Drive::watch_positions() {
 
 // The code may be all that is told: what the fault words say is asked for at once.
 void Drive::on_emergency(const bus::UnsolicitedEvent& unsolicited) {
-  for (auto& axis : axes_) axis->on_emergency(unsolicited.code);
+  for (auto& axis : axes_) axis->faults().emergency(unsolicited.code, turn_.now, store_.exchange());
   std::string text = unsolicited.code == 0 ? std::string("EMCY 0x0000: the errors are over")
                                            : fmt::format("EMCY 0x{:04X}, error register 0x{:02X}, {}", unsolicited.code,
                                                          unsolicited.error_register, hex_text(unsolicited.vendor));

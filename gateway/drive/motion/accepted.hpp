@@ -17,6 +17,10 @@ class Accepted {
   /// `at`: the point in the axis's record.
   void note(Quantity quantity, std::int64_t value, AxisRecord::Point at) { entry(quantity) = Entry{value, at}; }
   /// It was accepted and never begun: nobody knows any more what is wanted.
+  void forget(const WriteBatch& batch) {
+    for (const Setpoint& sp : batch.setpoints) forget(sp.quantity);
+    if (batch.mode) forget(Quantity::mode);
+  }
   void forget(Quantity quantity) { entry(quantity).reset(); }
   /// The drive has come up from scratch: parameters are what it holds, targets are as they were asked for.
   void forget_parameters() {

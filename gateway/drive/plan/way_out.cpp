@@ -75,6 +75,7 @@ Errc held_on_way_out(const AxisCore& core, model::ObjectId object, std::int64_t 
   // A word that halts holds the torque and never gives it. A target of a stop is the place where it was asked for.
   if (sender.stops) return reach == Reach::moves || keeps_enabled ? Errc::ok : Errc::state_unsuitable;
   if (core.motion.record().stopped_since(*sender.asked)) return Errc::dropped_by_stop;
+  if (core.turn.now > sender.by) return Errc::never_started;
   if (sender.begins) return Errc::ok;
   if (reach == Reach::enables) return keeps_enabled ? Errc::ok : Errc::state_unsuitable;
   // A new speed acts on the run that is on: by itself, or by the run's start once more (CommandDef::repeat_on_change).

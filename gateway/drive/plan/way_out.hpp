@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The way out of one axis: every write that is about to leave is judged once more by what it could do to the motor, by
 // its profile and by what the drive shows, not by who has planned it. Pure. Promises that nothing which enables or
-// moves leaves after a newer stop, without having been asked for, or as a stop of an axis that has no torque. Never
-// changes a write: it passes or does not.
+// moves leaves after a newer stop, too late, without having been asked for, or as a stop of an axis that has no torque.
+// Never changes a write: it passes or does not.
 #pragma once
 
 #include <optional>
@@ -22,9 +22,12 @@ struct Sender {
   bool stops = false;   ///< a stop under way
   bool begins = false;  ///< its client has asked for an enable or a start
   bool keeps = false;   ///< the keep-alive: what the drive was last known to take
+  /// What enables or moves leaves by then: its client's time to begin, as long as nothing was sent, and to be answered.
+  Instant by = kNever;
 };
 
-/// Errc::ok: it passes. dropped_by_stop: a stop is newer. state_unsuitable: nobody has asked for what it would do.
+/// Errc::ok: it passes. dropped_by_stop: a stop is newer. never_started: it is too late. state_unsuitable: nobody has
+/// asked for what it would do.
 [[nodiscard]] Errc held_on_way_out(const AxisCore& core, model::ObjectId object, std::int64_t number,
                                    const Sender& sender);
 

@@ -241,11 +241,11 @@ DdsClient* DdsClients::on_sample(const Guid& writer, std::optional<std::int32_t>
   return client;
 }
 
-std::shared_ptr<ClientLife> DdsClients::asks_for_objects(const ClientLife& owner, const ClientLife& other) const {
-  if (owner.id == other.id || owner.origin != other.origin) return nullptr;
-  for (const auto& [guid, client] : clients_)
-    if (client.life != nullptr && client.life->id == owner.id && !client.commands) return client.life;
-  return nullptr;
+bool DdsClients::asks_for_objects(const ClientLife& owner, const ClientLife& other) const {
+  if (owner.id == other.id || owner.origin != other.origin) return false;
+  return std::ranges::any_of(clients_, [&owner](const auto& each) {
+    return each.second.life != nullptr && each.second.life->id == owner.id && !each.second.commands;
+  });
 }
 
 void DdsClients::on_link_up(Instant now) {

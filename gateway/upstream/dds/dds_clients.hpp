@@ -83,8 +83,8 @@ class DdsClients {
   [[nodiscard]] std::string name_of(const Guid& writer) const;
 
   /// This owner of an axis asks for objects alone, and `other` is of the same participant: one program with two
-  /// writers, since the topics are two. nullptr: it is not so.
-  [[nodiscard]] std::shared_ptr<ClientLife> asks_for_objects(const ClientLife& owner, const ClientLife& other) const;
+  /// writers, since the topics are two.
+  [[nodiscard]] bool asks_for_objects(const ClientLife& owner, const ClientLife& other) const;
 
   void on_link_up(Instant now);
   void on_link_down(Instant now);

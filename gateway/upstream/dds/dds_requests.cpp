@@ -175,17 +175,14 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   if (record.mask != asked.mask && !begins) plan.afterwards = Errc::never_started;
   press(record, axis, held);
   if (stops(record)) stop_order_.stopped(record.axis, record.received);
-  // Where the participant has written objects of this axis first, by its other writer, that one makes way: for as long
-  // as the claim is judged, its lease is one that its own participant may take.
+  // Where the participant has written objects of this axis first, by its other writer, that one makes way.
   const auto& owner = axis->lease.owner;
-  const auto sibling = owner ? clients_.asks_for_objects(*owner, *life) : nullptr;
-  if (sibling) sibling->connected = false;
+  if (client != nullptr && owner && clients_.asks_for_objects(*owner, *life)) client->life->goes_on_for = owner->id;
   start(record.axis, std::move(plan), [record, held, begins](DdsRequests& self, const BatchResult& result) {
     if (!begins || result.outcome.code != Errc::ok) return self.end_command(record, held, result);
     self.memory_.ended(key_of(record), record.command, kNameTaken);
     self.reply(record, kNameTaken);
   });
-  if (sibling) sibling->connected = true;
 }
 
 void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {

@@ -120,6 +120,17 @@ TEST_F(Owned, AnOrphanIsNotTakenOverByAProgramThatWasThereWhileItsOwnerAsked) {
   EXPECT_TRUE(o.waits_for(beside, false));
 }
 
+TEST_F(Owned, AProgramsOtherWriterMakesWayForItAndNobodyElseDoes) {
+  Ownership o = owned(rules, kStart);
+  const auto other = client(3, "10.0.0.1");
+  EXPECT_EQ(o.judge(other, true), Errc::not_owner);
+  other->goes_on_for = plc->id;
+  EXPECT_EQ(o.judge(other, true), Errc::ok);
+  EXPECT_EQ(o.judge(panel, true), Errc::not_owner);
+  other->goes_on_for = 9;
+  EXPECT_EQ(o.judge(other, true), Errc::not_owner);
+}
+
 TEST_F(Owned, AnOrphanRunsOutLikeAnyLease) {
   Ownership o = owned(rules, kStart);
   plc->connected = false;

@@ -72,6 +72,21 @@ TEST_F(WayOut, ATargetMovesWhereTheDriveFollowsItAndIsEnabled) {
   EXPECT_EQ(target(Quantity::target_velocity, 1000), Reach::nothing);
 }
 
+TEST_F(WayOut, WhatComesTooLateGivesNoTorqueAndAStopIsNeverTooLate) {
+  shows(kDisabled, 1, 6);
+  turn.now = kLongAgo + std::chrono::seconds(1);
+  EXPECT_EQ(enable_of({.asked = record.now(), .begins = true, .by = turn.now}), Errc::ok);
+  turn.now += std::chrono::milliseconds(1);
+  EXPECT_EQ(enable_of({.asked = record.now(), .begins = true, .by = kLongAgo + std::chrono::seconds(1)}),
+            Errc::never_started);
+  EXPECT_EQ(held_on_way_out(core, core.model.controlword, 6, {.asked = record.now(), .by = kLongAgo}), Errc::ok)
+      << "it gives none";
+  shows(kEnabled, 1);
+  EXPECT_EQ(
+      held_on_way_out(core, core.model.controlword, 0x010F, {.asked = record.now(), .stops = true, .by = kLongAgo}),
+      Errc::ok);
+}
+
 TEST_F(WayOut, AnEnablePassesForWhoeverHasAskedForItAfterTheNewestStop) {
   shows(kDisabled, 1, 6);
   record.stop(record.accepted());

@@ -1,57 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an axis sees in its drive's newest samples, and shows in its image.
+#include "gateway/drive/axis/axis_signs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <string>
 #include <utility>
-
-#include "gateway/drive/axis/axis.hpp"
 
 namespace axisgate::drive {
 
-void Axis::on_samples() { core_.refresh_virtual(); }
-
-// What was accepted stays what it is in register units; the drive's numbers for it are others now.
-void Axis::on_scale() {
-  shown_.show_model();
-  watch_.renumbered();
-  core_.motion.scale_changed();
-  const auto raw_of = [this](const auto& each) {
-    return core_.model.binding(each.second.quantity)->to_raw(each.second.value, core_.object(each.first));
-  };
-  // What the drive cannot hold any more is forgotten: what it holds is held against the limits.
-  std::erase_if(core_.accepted_speeds, [&](const auto& each) { return !raw_of(each); });
-  for (auto& each : core_.accepted_speeds) each.second.raw = *raw_of(each);
+void AxisSigns::on_bring_up() {
+  reference_invalidated_ = false;
+  counted_.reset();
 }
 
-void Axis::observe() {
-  const AxisFacts facts = core_.facts();
-  core_.watch_fault();
-  core_.motion.observe(facts, core_.model.homing_timeout);
+void AxisSigns::observe(const AxisFacts& facts, const PendingBatches& pending) {
+  const bool waits = !pending.empty();
   observe_counter();
-  observe_reference(facts);
-  observe_volatile();
-  observe_homing_method();
-  observe_end_of_fault(facts);
-  bool clamped = false;
-  for (const model::Binding& binding : core_.model.bindings)
-    if (binding.object != model::kNoObject && binding.object != core_.model.controlword)
-      clamped = clamped || core_.store[binding.object].clamped;
-  set_alarm(AxisAlarm::clamped, clamped);
-  observe_jog();
-  observe_stop();
-  watch_.observe(
-      std::ranges::any_of(pending_, [](const Pending& p) { return AxisWatch::explains(p.command_sequence->batch()); }));
-  if (const auto stop = watch_.take_stop(); stop && !closing_) stop_by_itself(*stop, false, [](const BatchResult&) {});
-  observe_owed();
-  if (!core_.motion.take_homing_timeout()) return;
-  host_.event(image_.number, EventKind::warning, 0, "homing took longer than its timeout: halted");
-  stop_by_itself(Command::halt, false, [](const BatchResult&) {});
+  observe_reference(facts, waits);
+  observe_volatile(waits);
+  observe_homing_method(waits);
+  observe_end_of_fault(facts, pending.enables());
 }
 
-void Axis::observe_reference(const AxisFacts& facts) {
+void AxisSigns::observe_reference(const AxisFacts& facts, bool pending) {
   if (core_.is_virtual() && facts.reference && !core_.counter_wrapped) core_.homed = true;
   if (core_.turn.link != LinkState::online || !core_.model.homed || !core_.store[core_.model.homed->object].cached)
     return;
@@ -60,14 +32,14 @@ void Axis::observe_reference(const AxisFacts& facts) {
   // What says so in one mode alone says nothing in it before the homing either, unless the drive was silent since.
   const bool lasts = reference_invalidated_ || !core_.model.homed_mode;
   reference_invalidated_ = reference_invalidated_ && !facts.reference_tells;
-  if (!lasts || !core_.homed || !facts.reference_tells || facts.reference || homing || !pending_.empty()) return;
+  if (!lasts || !core_.homed || !facts.reference_tells || facts.reference || homing || pending) return;
   on_unseen_restart(
       "it has lost its reference: it has restarted, too quickly to go offline, or is homed by somebody else");
 }
 
 // No motor goes through half of its counter's numbers between two looks: it has come to their end, and goes on at the
 // other. The drive says homed all the same, and every place that is told it from now on is another one.
-void Axis::observe_counter() {
+void AxisSigns::observe_counter() {
   const model::ObjectId id = core_.object_of(Quantity::position_actual);
   const bool seen = id != model::kNoObject && core_.store[id].known && core_.reachable();
   const auto before = std::exchange(counted_, seen ? std::optional(core_.store[id].number) : std::nullopt);
@@ -78,7 +50,7 @@ void Axis::observe_counter() {
   core_.homed = false;
   core_.machine.forget_homing();
   watch_.renumbered();
-  host_.event(image_.number, EventKind::position_wrapped, 0,
+  host_.event(core_.model.number, EventKind::position_wrapped, 0,
               fmt::format("the drive's position counter has run over, from {} to {}: it is not homed any more", *before,
                           *counted_));
 }
@@ -86,9 +58,9 @@ void Axis::observe_counter() {
 // A drive without a reference and a state machine of its own: what it forgets with its power tells that it has
 // restarted. It counts from where it stood, and must be enabled anew. Who has not seen that yet may have enabled and
 // started it since: an axis that is shown as disabled must not turn.
-void Axis::observe_volatile() {
+void AxisSigns::observe_volatile(bool pending) {
   const bool remembers = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
-  if (remembers || core_.turn.link != LinkState::online || !pending_.empty()) return;
+  if (remembers || core_.turn.link != LinkState::online || pending) return;
   const bool speeds_lost = std::ranges::any_of(core_.accepted_speeds, [this](const auto& told) {
     const ObjectState& state = core_.store[told.first];
     const bool read = state.known && !state.unverified && !state.unsure && !state.clamped;
@@ -98,12 +70,12 @@ void Axis::observe_volatile() {
   const bool may_run = model::holds_motor(core_.facts().state);
   core_.make(core_.model.controlword, 0);
   on_unseen_restart("it has restarted, too quickly to go offline: enable it anew");
-  if (may_run) stop_by_itself(Command::disable, false, [](const BatchResult&) {});
+  if (may_run) guard_.asks(Command::disable);
 }
 
 // A drive that no more holds what a client has written was restarted unseen, or is set up by somebody else: 3.4 wants
 // the method "written or configured since bring-up".
-void Axis::observe_homing_method() {
+void AxisSigns::observe_homing_method(bool pending) {
   const model::Binding* method = core_.model.binding(Quantity::homing_method);
   const bool written = core_.homing_method && !core_.model.homing_method;
   if (!written || method == nullptr || method->object == model::kNoObject) {
@@ -112,42 +84,27 @@ void Axis::observe_homing_method() {
   }
   const ObjectState& state = core_.store[method->object];
   const bool read = state.cached && !state.unverified && !state.clamped;
-  if (core_.turn.link != LinkState::online || !pending_.empty() || !read) return;
+  if (core_.turn.link != LinkState::online || pending || !read) return;
   const bool held = std::exchange(holds_method_, core_.value(Quantity::homing_method) == core_.homing_method);
   if (!held || holds_method_) return;
   core_.homing_method.reset();
-  host_.event(image_.number, EventKind::warning, 0,
-              "the drive does not hold the homing_method that was written: write it again before a homing");
+  warn("the drive does not hold the homing_method that was written: write it again before a homing");
 }
 
 // 3.4: a fault ends every motion for good, and a fault_reset never enables. A drive with a state machine of its own may
 // go on by itself as soon as its cause is gone.
-void Axis::observe_end_of_fault(const AxisFacts& facts) {
+void AxisSigns::observe_end_of_fault(const AxisFacts& facts, bool enables) {
   if (!core_.is_virtual() || !core_.reachable()) return;
-  if (!std::exchange(faulted_, facts.faulted()) || !facts.enabled() || pending_.enables()) return;
-  host_.event(image_.number, EventKind::warning, 0, "enabled by the drive itself when its fault was over: disabled");
-  owed_.accepted(StopKind::disable, core_.store.exchange());
+  if (!std::exchange(faulted_, facts.faulted()) || !facts.enabled() || enables) return;
+  guard_.enabled_itself("enabled by the drive itself when its fault was over: disabled", core_.store.exchange());
 }
 
-void Axis::on_unseen_restart(const char* sign) {
+void AxisSigns::on_unseen_restart(const char* sign) {
   core_.homed = false;
   core_.machine.forget_homing();
   core_.store.invalidate_all();
   watch_.renumbered();
-  host_.event(image_.number, EventKind::warning, 0, sign);
-}
-
-// --- The image -----------------------------------------------------------------------------------------------------
-
-// By whatever way a homing was asked for: from when it is asked until it was seen to be over.
-bool Axis::zero_may_move() const { return core_.motion.running() == MotionKind::homing || pending_.moves_zero(); }
-
-void Axis::publish() {
-  const bool moves = zero_may_move();
-  if (moves || zero_moves_) image_.zero_moved = core_.turn.now;
-  zero_moves_ = moves;
-  ownership_.set_armed(core_.turn.link != LinkState::online || model::holds_motor(core_.facts().state));
-  shown_.publish(jog_);
+  warn(sign);
 }
 
 }  // namespace axisgate::drive
