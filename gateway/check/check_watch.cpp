@@ -5,10 +5,10 @@ namespace axisgate::check {
 namespace {
 
 std::string what_counts(const model::AxisModel& axis) {
-  constexpr double kTimesStandstill = 10, kOfRegister = 0.001;  // rpm
+  constexpr double kOfRegister = 0.001;  // rpm
   if (axis.binding(Quantity::position_actual) != nullptr)
     return fmt::format("{:g} turns of the motor", axis.watch.travel.to_double());
-  return fmt::format("{:g} rpm", kTimesStandstill * kOfRegister * static_cast<double>(axis.standstill_velocity));
+  return fmt::format("{:g} rpm", model::kTimesStandstill * kOfRegister * static_cast<double>(axis.standstill_velocity));
 }
 
 std::string reaction_text(model::WatchReaction reaction) {

@@ -29,6 +29,11 @@ class AxisRecord {
   void stop(Point accepted) { stop_ = std::max(stop_, accepted); }
   /// What ran is over for good: velocity and torque are needed again.
   void end() { end_ = ++now_; }
+  /// What clients asked for runs: by a start, or by a raw word that enables.
+  void run() { run_ = ++now_; }
+  /// Velocity and torque asked for until now run by a start or an enable alone: they came with a stop, or from who owns
+  /// the axis no more.
+  void set_aside() { aside_ = ++now_; }
 
   // --- What is seen -------------------------------------------------------------------------------------------------
 
@@ -36,6 +41,10 @@ class AxisRecord {
   void faulted() { breakdown_ = ++now_; }
   /// link_state is 2 or 3 no longer.
   void lost() { breakdown_ = ++now_; }
+  /// The drive has come up from scratch.
+  void restarted() { restart_ = ++now_; }
+  /// The drive's constants were read: it may count otherwise.
+  void rescaled() { rescale_ = ++now_; }
 
   /// A write did not pass the way out. In a correct program there is none.
   void hold_back() { ++held_back_; }
@@ -47,6 +56,9 @@ class AxisRecord {
   [[nodiscard]] bool stopped_since(Point since) const { return stop_ > since; }
   /// A velocity or torque that was accepted then is void.
   [[nodiscard]] bool void_since(Point since) const { return end_ > since; }
+  [[nodiscard]] bool set_aside_since(Point since) const { return aside_ > std::max(since, run_); }
+  [[nodiscard]] bool restarted_since(Point since) const { return restart_ > since; }
+  [[nodiscard]] bool rescaled_since(Point since) const { return rescale_ > since; }
   /// Another client's stop, a fault or a link loss: what `me` asked for before must be armed again.
   [[nodiscard]] bool interrupted(Point since, ClientId me) const {
     return breakdown_ > since || stops_.by_another(since, me);
@@ -77,6 +89,10 @@ class AxisRecord {
   Point breakdown_ = 0;
   Point stop_ = 0;
   Point end_ = 0;
+  Point run_ = 0;
+  Point aside_ = 0;
+  Point restart_ = 0;
+  Point rescale_ = 0;
   std::uint64_t held_back_ = 0;
   Newest stops_;
   Newest commands_;

@@ -10,6 +10,11 @@
 
 namespace axisgate::model {
 
+/// Above so many times `standstill_velocity` a motor turns, whatever noise its velocity has.
+inline constexpr int kTimesStandstill = 10;
+/// One part in so many of its speed at the stop is slower: what a loaded motor's speed varies is not taken for it.
+inline constexpr int kPartSlower = 50;
+
 /// What is done about an unexpected motion that goes against no stop and no disable; against those it is always alarm
 /// and stop.
 enum class WatchReaction : std::uint8_t {

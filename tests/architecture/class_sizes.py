@@ -13,11 +13,8 @@ LARGER = {
     "axisgate::commands::ManualPlan": (51, 30),
     "axisgate::bus::Bus": (37, 19),
     "axisgate::can::SocketCanLink": (18, 25),
-    "axisgate::drive::AxisCore": (28, 20),
-    "axisgate::drive::BringUp": (30, 23),
+    "axisgate::drive::BringUp": (27, 23),
     "axisgate::drive::CommandSequence": (47, 19),
-    "axisgate::drive::Drive": (82, 15),
-    "axisgate::drive::Motion": (45, 25),
     "axisgate::modbus_rtu::RtuWire": (24, 19),
 }
 

@@ -29,10 +29,9 @@ class CableWatch {
   /// `also_tell`: who else wants to know of each frame, before it is delivered.
   CableWatch(obey::Plant& plant, Violated violated, std::function<void(const CableFrame&)> also_tell);
 
-  /// A client's write: what it may start and enable. Until it is answered, or for the longest way of a write batch.
+  /// A client's write: what it may start and enable, until it is answered, and no later than a motor may start.
   void asked(int request, const reference::Write& write);
   void answered(int request);
-  void unanswered(int request);
   void gateway_died();
   /// The answer to the next start or enable is lost, whenever that comes within `time`.
   void lie_in_wait(Duration time) { in_wait_until_ = plant_.stage.runtime().now() + time; }

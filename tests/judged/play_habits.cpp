@@ -222,6 +222,22 @@ void Play::be_commanded_by_another(const Step& step) {
          step.at_once);
 }
 
+// The drive shows quick stop active, and its motor turns on.
+void Play::be_nearly_right(const Step& step) {
+  constexpr std::int64_t kStartsMs = 400;
+  send(step.client, one(row::command, kEnable), false);
+  Step start = press(step, Deed::order);
+  start.id = 2;
+  send(step.client, writers_->write_of(start), false);
+  pass(kStartsMs);
+  begin_trouble();
+  wire_whole_ = false;
+  was_nearly_right_ = true;
+  ignore_quick_stop(plant_.stage, program_.subject, true);
+  send(step.client, writers_->write_of({.deed = Deed::command, .client = step.client, .command = kStops}), false);
+  pass(kLengths.at(step.length));
+}
+
 // Design 4: a DDS master begins something and stays, or falls silent, or is gone; mostly another writer comes then.
 void Play::follow_each_other(const Step& step) {
   constexpr std::int64_t kAgainMs = 200;

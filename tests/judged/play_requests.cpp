@@ -78,10 +78,7 @@ void Play::collect() {
         line += "  [posted, and nobody can tell]";
         return never_answered(open), true;
       }
-      if (open.under_way)
-        watches_->cable.unanswered(open.request);
-      else
-        watches_->cable.answered(open.request);
+      if (!open.under_way) watches_->cable.answered(open.request);
       line += answer->contains(0) ? "  [ok]" : "  [exception";
       if (!answer->contains(0)) {
         for (const int each : *answer) line += " " + std::to_string(each);
@@ -153,10 +150,7 @@ void Play::lose_sight_of_posted(std::size_t client) {
   });
 }
 
-void Play::never_answered(const Open& open) {
-  contract_->unanswered(open.request);
-  watches_->cable.unanswered(open.request);
-}
+void Play::never_answered(const Open& open) { contract_->unanswered(open.request); }
 
 void Play::replace(std::size_t client, bool silently) {
   if (!clients_.connected(client)) return;
@@ -197,7 +191,7 @@ Shown Play::shown_by(std::vector<std::uint16_t> words) const {
   return {.words = std::move(words),
           .low_word_first = plant_.listener.low_word_first,
           .float_numbers = plant_.listener.float_numbers,
-          .alone = !another_master_,
+          .alone = !another_master_ && !was_nearly_right_,
           .statusword_tells = is_cia402(program_.subject)};
 }
 

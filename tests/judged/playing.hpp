@@ -84,6 +84,7 @@ class Play {
   void insist(const Step& step);
   void press_out_of_sight(const Step& step);
   void be_commanded_by_another(const Step& step);
+  void be_nearly_right(const Step& step);
   void jog_unanswered(const Step& step, std::uint16_t button);
   void follow_each_other(const Step& step);
   void jog_by_dds(const Step& step);
@@ -127,7 +128,8 @@ class Play {
   std::set<std::int64_t> ids_{0};                 ///< of commands, that anybody has written
   std::set<std::size_t> looks_at_once_;           ///< clients whose move was just answered
   bool wire_whole_ = true;
-  bool another_master_ = false;  ///< has spoken to the drive
+  bool another_master_ = false;    ///< has spoken to the drive
+  bool was_nearly_right_ = false;  ///< the drive has shown quick stops that stopped nothing
   bool had_outage_ = false;
   std::int64_t whole_since_ms_ = 0;
   std::int64_t online_since_ms_ = -1;

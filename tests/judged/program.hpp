@@ -55,7 +55,7 @@ enum class Deed : std::uint8_t {
   reconnect,      ///< the connection ends, a new one begins; perhaps of a PLC that was started anew, ids and all
   vanish,         ///< silent for ever; a new connection begins after a while
   lost,           ///< something is pressed, or let go, while the drive is out of sight
-  cut,            ///< the wire, and nobody reports it
+  cut,            ///< the wire, and nobody reports it; or the drive heeds no quick stop, and shows it all the same
   unplug,         ///< the adapter, and the system reports it
   lose,           ///< the next answers of the drive
   late,           ///< they come late

@@ -20,6 +20,9 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
   asked_.erase(request);
   constexpr int kNoAnswer = 0x0B;
   const bool done = exceptions.contains(0);
+  // 3.4 Stops: "a stop is answered when the state shows it and the velocity falls or is 0".
+  const auto stops = [&](const World& world) { return world.pending.at(request).verdict.stop; };
+  if (exceptions == std::set{0} && asked.stops && !asked.obeyed && std::ranges::all_of(worlds_, stops)) return false;
   std::vector<World> fitting;
   for (const World& world : worlds_) {
     const Pending& pending = world.pending.at(request);

@@ -169,7 +169,8 @@ int Contract::send(std::size_t client, const Write& write) {
   const int number = ++requests_;
   if (lost_count_) return number;
   const SeenBefore seen_before = this->seen_before(client, write);
-  asked_[number] = {client, trouble_, sight_.now_ms};
+  asked_[number] = {client, trouble_, sight_.now_ms, asserts_stop(write)};
+  asked_[number].see(sight_);
   if (!is_dds(client)) asked_ms_[client] = sight_.now_ms;
   std::vector<World> worlds;
   std::set<std::string> said;

@@ -34,6 +34,7 @@ struct Sight {
   std::int64_t velocity = 0;      ///< 0: it stands
   std::optional<bool> enabled{};  ///< none: of this drive nobody can tell
   bool faulted = false;
+  bool torque = true;  ///< false: what turns coasts
 };
 
 inline constexpr std::int64_t kClearMs = 250;  ///< so long standing or moving: no doubt about it
@@ -269,6 +270,10 @@ class Contract {
     std::size_t client = 0;
     bool troubled = false;
     std::int64_t at_ms = 0;
+    bool stops = false;        ///< it asserts a stop
+    bool obeyed = false;       ///< since then the motor got slower, stood, or had no torque
+    std::int64_t fastest = 0;  ///< since then
+    void see(const Sight& sight);
   };
   /// What a DDS writer has asked for with a request_id of its own.
   struct Said {

@@ -161,9 +161,16 @@ bool Contract::may_be_over() const {
   });
 }
 
+void Contract::Asked::see(const Sight& sight) {
+  const std::int64_t speed = std::abs(sight.velocity);
+  obeyed = obeyed || speed == 0 || speed < fastest || !sight.torque;
+  fastest = std::max(fastest, speed);
+}
+
 bool Contract::see(const Sight& sight) {
   if ((sight.velocity == 0) != (sight_.velocity == 0)) since_ms_ = sight.now_ms;
   sight_ = sight;
+  for (auto& [request, asked] : asked_) asked.see(sight);
   if (sight.velocity == 0) stood_at_ = sight.position;
   pass_time(sight.now_ms);
   if (!lost_count_) {

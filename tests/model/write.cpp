@@ -60,6 +60,18 @@ Write coil_block(std::uint16_t first, std::vector<std::uint16_t> values) {
   return {fc::write_coils, first, std::move(values)};
 }
 
+bool asserts_stop(const Write& write) {
+  if (!write.coils()) {
+    const Rows rows = rows_of(write);
+    return rows.contains(row::command) && is_stop(rows.at(row::command));
+  }
+  for (std::size_t i = 0; i < write.words.size(); ++i) {
+    const std::size_t number = write.first + i;
+    if (write.words[i] != 0 && (number == coil::quick_stop || number == coil::halt)) return true;
+  }
+  return false;
+}
+
 Rows rows_of(const Write& write) {
   if (write.function == fc::sample) return write.sample;
   if (half_row(write)) return {};

@@ -76,6 +76,8 @@ struct Write {
 [[nodiscard]] Write coil_block(std::uint16_t first, std::vector<std::uint16_t> values);
 /// The rows of it that a table of offsets 40..79 has, with their values; halves of a row are left out.
 [[nodiscard]] Rows rows_of(const Write& write);
+/// 3.4 Stops: "Asserted stops are commands 2, 3, 4 and coils 2, 3 = 1, nothing else."
+[[nodiscard]] bool asserts_stop(const Write& write);
 [[nodiscard]] std::string text(const Write& write);
 
 }  // namespace axisgate::test::reference

@@ -42,6 +42,8 @@ INSTANTIATE_TEST_SUITE_P(All, AfterAGap, testing::ValuesIn(kSubjects), named);
 
 // --- A quick stop that stops nothing -------------------------------------------------------------------------------
 
+constexpr std::int64_t kNoiseRpm = 3, kSlowRamp = 300;
+constexpr std::int64_t kTwentySeconds = 75;  ///< a ramp, for 150 rpm
 constexpr std::int64_t kDone = 2, kNotReached = 11, kEnabledNow = 0x27, kStateBits = 0x6F;
 
 class Unheeded : public testing::TestWithParam<Subject> {
@@ -88,7 +90,6 @@ TEST_P(Unheeded, AQuickStopByControlwordIsNotDoneEither) {
 // It has begun to slow down, was told done, and then it gets no slower.
 TEST_P(Unheeded, WhatWasToldDoneIsTakenBackWhereTheMotorTurnsOn) {
   plant_.ready();
-  constexpr std::int64_t kTwentySeconds = 75;  // for 150 rpm
   ASSERT_EQ(a_.row(row::profile_deceleration, kTwentySeconds), kOk);
   static_cast<void>(a_.row(row::quick_stop_deceleration, kTwentySeconds));  // not every drive has its own
   ASSERT_EQ(plant_.set_endless(a_), kOk);
@@ -102,7 +103,90 @@ TEST_P(Unheeded, WhatWasToldDoneIsTakenBackWhereTheMotorTurnsOn) {
   EXPECT_TRUE(plant_.logged("the motor turns on after its quick_stop"));
 }
 
+// Noise about its speed is no fall.
+TEST_P(Unheeded, AQuickStopIsNotDoneByNoiseOfTheVelocity) {
+  runs();
+  blur_speed(plant_.stage, GetParam(), kNoiseRpm, {});
+  ignore_quick_stop(plant_.stage, GetParam(), true);
+  EXPECT_EQ(a_.command(kQuickStop), kFailed);
+  plant_.run(5s);
+  EXPECT_EQ(a_.result(), kNotReached);
+}
+
+// It is accepted while the motor still gets faster.
+TEST_P(Unheeded, AQuickStopOfWhatJustStartsIsNotDone) {
+  plant_.ready();
+  ASSERT_EQ(a_.row(row::profile_acceleration, kSlowRamp), kOk);
+  ASSERT_TRUE(plant_.start_endless(a_));
+  ignore_quick_stop(plant_.stage, GetParam(), true);
+  EXPECT_EQ(a_.command(kQuickStop), kFailed);
+  EXPECT_EQ(a_.result(), kNotReached);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Unheeded, testing::ValuesIn(subjects(is_cia402)), named);
+
+// A drive that obeys is not told to have failed, however long it takes and whatever it tells of its velocity.
+class Slow : public testing::TestWithParam<Subject> {
+ protected:
+  void SetUp() override { plant_.ready(); }
+  void runs_at(std::int64_t speed) {
+    ASSERT_EQ(a_.row(row::target_velocity, speed), kOk);
+    ASSERT_EQ(a_.command(kRun), kOk);
+    ASSERT_TRUE(plant_.reaches(speed, 20s));
+    plant_.run(1s);
+  }
+  /// To its end, and for a while after it.
+  void is_done_and_stays_so(std::int64_t stop, Duration time = 5s) {
+    ASSERT_EQ(a_.command(stop), kOk) << stop;
+    EXPECT_TRUE(plant_.comes_to_stand(time));
+    plant_.run(5s);
+    EXPECT_EQ(a_.result(), kDone);
+    EXPECT_FALSE(plant_.logged("turns on after"));
+    EXPECT_FALSE(plant_.logged("was not reached"));
+    EXPECT_FALSE(plant_.logged("a stop is owed"));
+    EXPECT_FALSE(plant_.logged("unexpected_motion"));
+  }
+  Plant plant_{GetParam()};
+  Client& a_ = plant_.a;
+};
+
+TEST_P(Slow, ARampOfFortySecondsIsDone) {
+  constexpr std::int64_t kSixHundredRpm = 600'000, kFortySeconds = 150;
+  ASSERT_EQ(a_.row(row::profile_deceleration, kFortySeconds), kOk);
+  static_cast<void>(a_.row(row::quick_stop_deceleration, kFortySeconds));
+  for (const std::int64_t stop : {kHalt, kQuickStop}) {
+    ASSERT_EQ(a_.command(kEnable), kOk);
+    runs_at(kSixHundredRpm);
+    is_done_and_stays_so(stop, 50s);
+  }
+}
+
+// Its velocity still shows that it stands.
+TEST_P(Slow, AStopOfWhatHasJustStartedIsDone) {
+  ASSERT_EQ(a_.row(row::profile_deceleration, kTwentySeconds), kOk);
+  static_cast<void>(a_.row(row::quick_stop_deceleration, kTwentySeconds));
+  for (const std::int64_t stop : {kQuickStop, kHalt}) {
+    ASSERT_EQ(a_.command(kEnable), kOk);
+    ASSERT_EQ(a_.row(row::target_velocity, kSpeed), kOk);
+    ASSERT_EQ(a_.command(kRun), kOk);
+    ASSERT_TRUE(plant_.reaches(kSpeed));
+    is_done_and_stays_so(stop, 30s);
+  }
+}
+
+TEST_P(Slow, AVelocityWithNoiseThatIsToldLateFailsNoStop) {
+  for (const Duration late : {0ms, 250ms}) {
+    blur_speed(plant_.stage, GetParam(), kNoiseRpm, late);
+    for (const std::int64_t stop : {kHalt, kQuickStop}) {
+      ASSERT_EQ(a_.command(kEnable), kOk);
+      runs_at(kSpeed);
+      is_done_and_stays_so(stop);
+      is_done_and_stays_so(stop);  // of what stands
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Slow, testing::ValuesIn(subjects(is_cia402)), named);
 
 // Without torque a motor coasts as it may, and what stands has nothing to show.
 class Heeded : public testing::TestWithParam<Subject> {};
@@ -142,6 +226,24 @@ TEST(UnheededQuickStop, OfAProfileThatAwaitsNothingIsNotDone) {
   EXPECT_EQ(stage.command(1, Command::disable).outcome.code, Errc::ok);
   stage.run(2s);
   EXPECT_EQ(truth(stage, Subject::id286pro).velocity, 0);
+}
+
+// So slowly that its velocity could be noise: its position tells. What the gateway does against it changes no result.
+TEST(UnheededQuickStop, OfAMotorThatCreepsOnIsTakenBack) {
+  Plant plant(Subject::jd_can);
+  plant.ready();
+  ASSERT_EQ(plant.a.row(row::profile_deceleration, kTwentySeconds), kOk);
+  ASSERT_TRUE(plant.start_endless(plant.a));
+  ASSERT_TRUE(plant.reaches(kSpeed));
+  EXPECT_EQ(plant.a.command(kQuickStop), kOk);
+  simulated::KincoDrive& drive = plant.stage.drive(0);
+  static_cast<void>(drive.poke({0x60FF, 0}, simulated::speed_dec(6, drive.model().encoder_counts)));
+  ignore_quick_stop(plant.stage, plant.subject, true);
+  plant.run(17s);
+  EXPECT_EQ(plant.a.result(), kDone) << "it gets slower";
+  EXPECT_TRUE(plant.stage.run_until([&] { return plant.a.result() == kNotReached; }, 20s));
+  plant.run(10s);
+  EXPECT_EQ(plant.a.result(), kNotReached);
 }
 
 // --- A restart that nobody has heard -------------------------------------------------------------------------------

@@ -25,6 +25,11 @@ void Axis::step(Dec speed, bool position_loop, int direction) {
   stalled_ = speed != 0 && actual_speed_ == 0;
   physical_ = wanted;
   actual_ += actual_speed_;
+  if (blurred()) {
+    ++steps_;
+    told_.push_back(actual_speed_);
+    while (told_.size() > blur_.late + 1) told_.pop_front();
+  }
   if (!position_loop) demand_ = actual_;
 
   // An index pulse lies at index_offset + k revolutions. One is passed when the step crosses or reaches it.
@@ -36,6 +41,13 @@ void Axis::step(Dec speed, bool position_loop, int direction) {
   if (turns_now > turns_before) index = offset + turns_now * revolution_;
   if (turns_now < turns_before) index = offset + turns_before * revolution_;
   if (index && *index != before) index_passed_ = actual_ - direction * (physical_ - *index);
+}
+
+Dec Axis::told_speed() const {
+  if (!blurred() || told_.empty()) return actual_speed_;
+  constexpr std::uint64_t spread = 2654435761U;  // each step otherwise, and always the same
+  const auto part = static_cast<Dec>(steps_ * spread >> 8 & 1023U) - 511;
+  return told_.front() + blur_.noise * part / 511;
 }
 
 void Axis::redefine(FinePosition actual) {

@@ -4,6 +4,8 @@
 // Never decides where to go.
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "tests/simulated/mechanics.hpp"
@@ -36,6 +38,10 @@ class Axis {
   // From now on the position loop follows only what is further away than this: its static error.
   void fall_short(FinePosition by) { short_by_ = by; }
   FinePosition short_by() const { return short_by_; }
+  // What is told of its speed: up to so much more or less, and so many steps late.
+  void blur(Dec noise, std::size_t late) { blur_ = {noise, late}; }
+  bool blurred() const { return blur_.noise != 0 || blur_.late != 0; }
+  Dec told_speed() const;
 
  private:
   const Mechanics& mechanics_;
@@ -46,6 +52,12 @@ class Axis {
   FinePosition actual_ = 0;
   FinePosition physical_ = 0;
   FinePosition short_by_ = 0;
+  struct {
+    Dec noise = 0;
+    std::size_t late = 0;
+  } blur_;
+  std::deque<Dec> told_;     // the newest last
+  std::uint64_t steps_ = 0;  // of a blurred one
   bool jammed_ = false;
   bool stalled_ = false;
   std::optional<FinePosition> index_passed_;

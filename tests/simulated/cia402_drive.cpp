@@ -26,7 +26,7 @@ void Cia402Drive::restart(Time now) {
 
 bool Cia402Drive::quiescent() const {
   return !boot_until_ && !store_until_ && !pending_ && !halted_ && motion_.at_rest(axis_) &&
-         axis_.demand() == axis_.actual() && rests();
+         axis_.demand() == axis_.actual() && !axis_.blurred() && rests();
 }
 
 void Cia402Drive::advance(Time now) {

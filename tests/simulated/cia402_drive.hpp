@@ -55,6 +55,10 @@ class Cia402Drive {
   void numb(bool numb);
   // It shows quick stop active and turns on at its target velocity, on a ramp too; when it comes to, it stops.
   void ignore_quick_stop(bool ignores);
+  // Its velocity (606C) has noise, and is told late.
+  void blur_speed(std::int64_t noise_rpm, Time late) {
+    axis_.blur(speed_dec(noise_rpm, facts_.encoder_counts), static_cast<std::size_t>(late / one_millisecond));
+  }
   // As the panel or another port would write it: same effects, not counted. Measured values that nothing computes
   // (voltage, temperature) may be set too.
   Refusal poke(ObjectKey key, std::int64_t value);

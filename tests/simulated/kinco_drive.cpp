@@ -110,7 +110,7 @@ void KincoDrive::after_step(Dec speed_before) {
   current_ = coasts ? 0 : std::clamp<Dec>((axis_.speed() - speed_before) * 2048 / full, -2048, 2047);
   if (motion_.task() == Task::torque) current_ = torque_command_;
   // 606C of the JD is sampled each 200 ms (JD 4.2).
-  if (ticks_ % 200 == 0) sampled_rpm_ = rpm_of(axis_.actual_speed(), encoder_counts_);
+  if (ticks_ % 200 == 0) sampled_rpm_ = rpm_of(axis_.told_speed(), encoder_counts_);
 }
 
 void KincoDrive::before_step() {

@@ -83,7 +83,7 @@ std::uint16_t KincoDrive::outputs() const {
 
 std::optional<std::int64_t> KincoDrive::measured(ObjectKey key) const {
   const auto in_16_bits = [](std::int64_t value) { return std::clamp<std::int64_t>(value, -32768, 32767); };
-  const Dec speed = axis_.actual_speed();
+  const Dec speed = axis_.told_speed();
   switch (key.index << 8 | key.sub) {
     case 0x604000:
       return heard_controlword();

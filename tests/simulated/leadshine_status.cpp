@@ -99,7 +99,7 @@ std::optional<std::int64_t> LeadshineDrive::measured(ObjectKey key) const {
     case 0x606B00:
       return units_per_s_of(axis_.speed());
     case 0x606C00:
-      return units_per_s_of(axis_.actual_speed());
+      return units_per_s_of(axis_.told_speed());
     case 0x607400:
       return torque_demand_ / 1000;
     case 0x607700:

@@ -150,6 +150,15 @@ std::vector<MotorPlace> motors(Subject subject, bool neighbour) {
   return out;
 }
 
+namespace {
+
+bool has_torque(simulated::Cia402State state) {
+  using enum simulated::Cia402State;
+  return state == operation_enabled || state == quick_stop_active || state == fault_reaction_active;
+}
+
+}  // namespace
+
 Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
   using simulated::Cia402State;
   if (is_keya(subject)) {
@@ -157,7 +166,7 @@ Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
     const simulated::KeyaMotor& motor = drive.at(place.motor);
     const std::int64_t per_rev = kEdges * drive.parameters().of(place.motor, kLinesOfA);
     return {units(motor.count(), per_rev), kMilli * motor.rpm(), motor.enabled(),
-            (drive.faults(place.motor) & ~simulated::keya_fault::disabled) != 0};
+            (drive.faults(place.motor) & ~simulated::keya_fault::disabled) != 0, motor.enabled()};
   }
   if (subject == Subject::id286pro) {
     const simulated::Id286pro& drive = stage.id286pro(0, place.drive);
@@ -171,12 +180,12 @@ Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
     const simulated::LeadshineDrive& drive = stage.leadshine(0, place.drive);
     return {units(drive.position(), drive.units_per_revolution()),
             simulated::rpm_of(drive.axis().actual_speed(), drive.options().encoder_counts, kMilli),
-            drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};
+            drive.state() == Cia402State::operation_enabled, is_fault(drive.state()), has_torque(drive.state())};
   }
   const simulated::KincoDrive& drive = stage.drive(0, place.drive);
   const std::int64_t per_rev = drive.model().encoder_counts;
   return {units(drive.position(), per_rev), simulated::rpm_of(drive.axis().actual_speed(), per_rev, kMilli),
-          drive.state() == Cia402State::operation_enabled, is_fault(drive.state())};
+          drive.state() == Cia402State::operation_enabled, is_fault(drive.state()), has_torque(drive.state())};
 }
 
 namespace {
@@ -249,6 +258,10 @@ void lock(GatewayStage& stage, Subject subject, bool locked) {
 
 void ignore_quick_stop(GatewayStage& stage, Subject subject, bool ignores) {
   cia402(stage, subject).ignore_quick_stop(ignores);
+}
+
+void blur_speed(GatewayStage& stage, Subject subject, std::int64_t noise_rpm, Duration late) {
+  cia402(stage, subject).blur_speed(noise_rpm, late);
 }
 
 void numb(GatewayStage& stage, Subject subject, bool numb) {

@@ -102,6 +102,7 @@ struct Truth {
   std::int64_t velocity = 0;      ///< 0.001 rpm; 0: it stands
   std::optional<bool> enabled{};  ///< none: the drive cannot be disabled over its bus
   bool faulted = false;
+  bool torque = true;  ///< false: it has none, and what turns coasts
 };
 [[nodiscard]] Truth truth(GatewayStage& stage, Subject subject);
 
@@ -138,6 +139,8 @@ void numb(GatewayStage& stage, Subject subject, bool numb);
 
 /// It shows quick stop active and turns on. Of a CiA 402 drive.
 void ignore_quick_stop(GatewayStage& stage, Subject subject, bool ignores);
+/// CiA 402: its velocity has noise, and is told late.
+void blur_speed(GatewayStage& stage, Subject subject, std::int64_t noise_rpm, Duration late);
 
 /// An object of the drive that can be read at any time: its statusword where it has one, else a speed.
 [[nodiscard]] ObjectPlace readable_object(Subject subject);

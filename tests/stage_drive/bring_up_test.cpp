@@ -117,17 +117,16 @@ struct SetupRun {
       store.begin_exchange();
       log.push_back(std::string(next->write ? "write " : "read ") + model.objects[next->object].name);
       if (next->write) {
-        if (refuse_writes) {
-          bring_up.write_refused(false, kLongAgo);
-        } else {
-          if (!ignore_writes) held = next->number;
-          bring_up.written();
-        }
+        if (!refuse_writes && !ignore_writes) held = next->number;
       } else {
         store.read(next->object, next->object == 0 ? statusword : held, kLongAgo);
         if (next->object == 0) statusword = statusword_later;
-        bring_up.read_back_answered();
       }
+      bus::Exchange exchange;
+      if (next->write) exchange.access = bus::Access::write;
+      bus::ExchangeResult result;
+      if (next->write && refuse_writes) result.code = Errc::refused_by_drive;
+      bring_up.on_result(exchange, result, store, kLongAgo);
     }
     return bring_up;
   }

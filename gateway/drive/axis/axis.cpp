@@ -45,10 +45,10 @@ Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, co
     : image_(image),
       core_{drive, drive.axes[slot], store, turn, Motion{drive.axes[slot].velocity_lag, image.record}},
       shown_(core_, image_, host),
-      guard_(image.lease, drive.axes[slot].lease),
-      events_(core_, image_, guard_, accepted_, host),
-      admission_(core_, image_, guard_, accepted_, events_),
-      jog_(core_, image_, guard_.jog()),
+      guard_(image.lease, drive.axes[slot].lease, core_.jog),
+      events_(core_, image_, guard_, host),
+      admission_(core_, image_, guard_, events_),
+      jog_(core_, image_),
       watch_(core_, host),
       signs_(core_, watch_, guard_, host),
       queue_(core_, slot, host, *this) {
@@ -67,11 +67,8 @@ void Axis::set_loss_reaction(std::optional<bool> holds) {
 
 void Axis::on_bring_up() {
   watch_.renumbered();
-  core_.homing_method.reset();
-  if (core_.model.homing_method) core_.homing_method = *core_.model.homing_method;
-  core_.offset_owed.reset();
+  core_.motion.record().restarted();
   core_.mode_chosen = false;
-  accepted_.forget_parameters();
   core_.fault.forget_emergency();
   signs_.on_bring_up();
   core_.homed = false;
@@ -98,13 +95,7 @@ void Axis::on_bring_up() {
 void Axis::on_scale() {
   shown_.show_model();
   watch_.renumbered();
-  core_.motion.scale_changed();
-  const auto raw_of = [this](const auto& each) {
-    return core_.model.binding(each.second.quantity)->to_raw(each.second.value, core_.object(each.first));
-  };
-  // What the drive cannot hold any more is forgotten: what it holds is held against the limits.
-  std::erase_if(core_.accepted_speeds, [&](const auto& each) { return !raw_of(each); });
-  for (auto& each : core_.accepted_speeds) each.second.raw = *raw_of(each);
+  rescale(core_);
 }
 
 // By its state, its position and its velocity a motion is seen to end, to stand and to keep within its limits.
@@ -153,9 +144,7 @@ BatchResult Axis::refuse(const WriteBatch& batch, Errc code, bool shown) {
 void Axis::accept(const WriteBatch& batch) {
   if (batch.life && resets_fault(batch)) shown_.reset_asked(batch.life->name);
   watch_.accepted(batch);
-  if (!batch.jogs)
-    for (const Setpoint& sp : batch.setpoints) accepted_.note(sp.quantity, sp.value, core_.motion.record().now());
-  if (batch.mode) accepted_.note(Quantity::mode, *batch.mode, core_.motion.record().now());
+  core_.asked.accept(batch);
 }
 
 std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal, BatchCallback on_result,
@@ -171,12 +160,6 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   if (code == Errc::ok) code = admit(core_, batch);
   const bool untrue = core_.alarm(AxisAlarm::units_disagree) && starts_motion(core_, batch);
   if (code == Errc::ok && untrue) code = Errc::state_unsuitable;
-  // A run that follows a jog has no button: it runs at what was asked for last, not at the jog's speed.
-  const bool runs = batch.command == Command::run_velocity && !batch.jogs && core_.velocity_beside_jog;
-  if (runs && std::ranges::none_of(batch.setpoints,
-                                   [](const Setpoint& sp) { return sp.quantity == Quantity::target_velocity; }))
-    batch.setpoints.push_back(
-        {Quantity::target_velocity, core_.velocity_beside_jog->value, core_.velocity_beside_jog->exact, true});
   const bool shown = own == nullptr || own->shown;
   Pending pending;
   pending.refusal = refusal;
@@ -264,9 +247,9 @@ BatchResult Axis::on_ended(Pending& pending) {
   name_limit(core_, batch, result);
   const Errc code = result.outcome.code;
   if (code != Errc::ok) {
-    forget_accepted_speeds(core_, batch);
+    forget_speeds(core_, batch);
     // It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
-    if (!sequence.begun()) accepted_.forget(batch);
+    if (!sequence.begun()) core_.asked.withdraw(batch);
     if (resets_fault(batch)) shown_.reset_failed();
   }
   if (!pending.by_mailbox) image_.latest = {command_result(code), result.outcome.detail, batch.command_id, result.stop};

@@ -106,7 +106,6 @@ class Axis final : private QueueOwner {
   AxisCore core_;
   AxisPublisher shown_;
   Guard guard_;
-  Accepted accepted_;
   AxisEvents events_;
   AxisAdmission admission_;
   AxisJog jog_;

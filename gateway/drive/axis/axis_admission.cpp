@@ -149,7 +149,7 @@ bool AxisAdmission::holds(Quantity quantity, std::int64_t value) const {
 bool AxisAdmission::owner_asks(ClientId client, Quantity quantity, std::int64_t value) const {
   const Ownership& ownership = guard_.ownership();
   if (!ownership.rules().on || !ownership.is_owner(client) || !image_.reachable()) return false;
-  const auto last = accepted_.value(quantity, core_.motion.record());
+  const auto last = core_.asked.accepted(quantity);
   if (last) return *last != value;
   // Nobody has asked for anything since the drive came up: what it holds is what counts; but a velocity or torque that
   // has lapsed is needed anew.

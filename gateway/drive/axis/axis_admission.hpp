@@ -14,8 +14,8 @@ namespace axisgate::drive {
 
 class AxisAdmission {
  public:
-  AxisAdmission(AxisCore& core, AxisImage& image, Guard& guard, const Accepted& accepted, AxisEvents& events)
-      : core_(core), image_(image), guard_(guard), accepted_(accepted), events_(events) {}
+  AxisAdmission(AxisCore& core, AxisImage& image, Guard& guard, AxisEvents& events)
+      : core_(core), image_(image), guard_(guard), events_(events) {}
 
   // --- Who asks -----------------------------------------------------------------------------------------------------
 
@@ -61,7 +61,6 @@ class AxisAdmission {
   AxisCore& core_;
   AxisImage& image_;
   Guard& guard_;
-  const Accepted& accepted_;
   AxisEvents& events_;
   std::optional<ClientId> taken_by_{};  ///< its take-over's halt is under way
 };

@@ -47,7 +47,7 @@ void AxisEvents::asked(const WriteBatch& asked, const WriteBatch& carried_out) {
   WriteBatch shown = asked;
   // A target that was accepted and waits for the wire is the one that the start will use.
   const auto target = target_of(asked.command);
-  const auto value = target ? accepted_.value(*target, core_.motion.record()) : std::nullopt;
+  const auto value = target ? core_.asked.accepted(*target) : std::nullopt;
   if (value && !sets(asked, *target)) shown.setpoints.push_back({*target, *value});
   const bool ends_run = asked.command != carried_out.command && is_stop(carried_out.command);
   const bool foreign =

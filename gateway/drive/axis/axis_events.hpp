@@ -9,14 +9,13 @@
 #include "gateway/drive/axis/pending_batches.hpp"
 #include "gateway/drive/axis/telling.hpp"
 #include "gateway/drive/guard/guard.hpp"
-#include "gateway/drive/motion/accepted.hpp"
 
 namespace axisgate::drive {
 
 class AxisEvents {
  public:
-  AxisEvents(const AxisCore& core, const AxisImage& image, const Guard& guard, const Accepted& accepted, AxisHost& host)
-      : core_(core), image_(image), guard_(guard), accepted_(accepted), host_(host) {}
+  AxisEvents(const AxisCore& core, const AxisImage& image, const Guard& guard, AxisHost& host)
+      : core_(core), image_(image), guard_(guard), host_(host) {}
 
   /// `carried_out`: what has become of a coil that ends a run, or of a stop beside which something was refused.
   void asked(const WriteBatch& asked, const WriteBatch& carried_out);
@@ -32,7 +31,6 @@ class AxisEvents {
   const AxisCore& core_;
   const AxisImage& image_;
   const Guard& guard_;
-  const Accepted& accepted_;
   AxisHost& host_;
   Telling telling_;
 };

@@ -23,7 +23,6 @@ Errc AxisJog::begin(WriteBatch& batch, Duration cycle) {
   batch.setpoints.push_back({.quantity = Quantity::target_velocity, .value = signed_speed, .with_command = true});
   batch.command = Command::run_velocity;
   batch.jogs = true;
-  if (!jog_.active()) core_.velocity_beside_jog = core_.motion.wanted(Quantity::target_velocity).value_or(Wanted{});
   jog_.start(direction, batch.client, core_.turn.now, core_.model.jog_timeout, core_.motion.record().accepted());
   waits_ = true;
   return Errc::ok;
@@ -114,12 +113,6 @@ bool AxisJog::may_be_jog() const {
   if (!core_.motion.found_at_start() || !facts.enabled()) return false;
   const bool tells_mode = !core_.is_virtual() || (!core_.model.virtual_axis->gate_only && facts.mode != 0);
   return tells_mode ? core_.motion.goes_on(Quantity::target_velocity, facts) : facts.moving;
-}
-
-void AxisJog::restore_target() {
-  if (core_.velocity_beside_jog && core_.motion.wanted(Quantity::target_velocity))
-    core_.motion.want(Quantity::target_velocity, *core_.velocity_beside_jog);
-  core_.velocity_beside_jog.reset();
 }
 
 }  // namespace axisgate::drive

@@ -15,8 +15,8 @@ namespace axisgate::drive {
 
 class AxisJog {
  public:
-  /// `jog`: which runs; `image`: its jog_velocity.
-  AxisJog(AxisCore& core, const AxisImage& image, Jog& jog) : core_(core), image_(image), jog_(jog) {}
+  /// `image`: its jog_velocity.
+  AxisJog(AxisCore& core, const AxisImage& image) : core_(core), image_(image), jog_(core.jog) {}
 
   /// jog_forward or jog_reverse: not_supported, bad_value where its velocity is beyond a limit, state_unsuitable where
   /// the position limit is too close. ok: the batch is a run at the jog velocity. `cycle`: of the position's polls.
@@ -31,8 +31,6 @@ class AxisJog {
   [[nodiscard]] bool runs_unwatched() const;
   /// What turns may be a jog whose end nobody has asked for yet.
   [[nodiscard]] bool may_be_jog() const;
-  /// What a client has asked for before or beside the jog is the target again; a stop has left none.
-  void restore_target();
 
  private:
   [[nodiscard]] Duration usual_gap(Duration cycle) const;

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "gateway/drive/plan/planner.hpp"
+
 namespace axisgate::drive {
 
 void AxisSigns::on_bring_up() {
@@ -61,11 +63,7 @@ void AxisSigns::observe_counter() {
 void AxisSigns::observe_volatile(bool pending) {
   const bool remembers = !core_.is_virtual() || !core_.model.virtual_axis->gate_only;
   if (remembers || core_.turn.link != LinkState::online || pending) return;
-  const bool speeds_lost = std::ranges::any_of(core_.accepted_speeds, [this](const auto& told) {
-    const ObjectState& state = core_.store[told.first];
-    const bool read = state.known && !state.unverified && !state.unsure && !state.clamped;
-    return read && core_.object(told.first).nvm == model::Nvm::no && state.number != told.second.raw;
-  });
+  const bool speeds_lost = has_lost_speeds(core_);
   if (std::exchange(speeds_lost_, speeds_lost) || !speeds_lost) return;
   const bool may_run = model::holds_motor(core_.facts().state);
   core_.make(core_.model.controlword, 0);
@@ -77,7 +75,7 @@ void AxisSigns::observe_volatile(bool pending) {
 // the method "written or configured since bring-up".
 void AxisSigns::observe_homing_method(bool pending) {
   const model::Binding* method = core_.model.binding(Quantity::homing_method);
-  const bool written = core_.homing_method && !core_.model.homing_method;
+  const bool written = core_.homing_method() && !core_.model.homing_method;
   if (!written || method == nullptr || method->object == model::kNoObject) {
     holds_method_ = false;
     return;
@@ -85,9 +83,9 @@ void AxisSigns::observe_homing_method(bool pending) {
   const ObjectState& state = core_.store[method->object];
   const bool read = state.cached && !state.unverified && !state.clamped;
   if (core_.turn.link != LinkState::online || pending || !read) return;
-  const bool held = std::exchange(holds_method_, core_.value(Quantity::homing_method) == core_.homing_method);
+  const bool held = std::exchange(holds_method_, core_.value(Quantity::homing_method) == core_.homing_method());
   if (!held || holds_method_) return;
-  core_.homing_method.reset();
+  core_.asked.forget(Quantity::homing_method);
   warn("the drive does not hold the homing_method that was written: write it again before a homing");
 }
 

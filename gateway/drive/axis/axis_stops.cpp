@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -61,7 +60,6 @@ void Axis::settle() {
     };
     if (const auto result = send(*stop, ended)) ended(*result);
   }
-  if (!guard_.jog().active()) jog_.restore_target();
 }
 
 // What is owed again has its latch, and its client its answer: it is planned anew from what is known by now.
@@ -106,7 +104,6 @@ void Axis::accept_stop(const WriteBatch& batch) {
   core_.motion.record().stopped(batch.client);
   queue_.overtake(batch);
   guard_.jog().end();
-  jog_.restore_target();
   const auto kind = kind_of(batch);
   if (!kind) return;
   watch_.stopped(batch, *kind);
@@ -149,32 +146,18 @@ void Axis::on_stop_over(const Pending& pending, bool ended) {
   const bool confirmed = sequence.stop_confirmed();
   const bool goes_back = *kind == StopKind::halt && halts_by_position(core_);
   if (confirmed && !goes_back && pending.accepted == core_.motion.record().newest_stop())
-    watch_.stop_watch().begin({*kind, pending.accepted});
+    watch_.shown({*kind, pending.accepted, pending.batch().life != nullptr});
   if (ended || confirmed) guard_.discharged(owed.attempted(*kind, confirmed, core_.store.exchange(), core_.turn.now));
 }
 
-// What was told done is so until the motor stands, or something else is asked of it: a drive that shows a stop and
-// turns on has not stopped.
 void Axis::observe_stop() {
-  const auto stop = watch_.stop_watch().watched();
+  const auto stop = watch_.take_unheeded();
   if (!stop) return;
-  const Motion& motion = core_.motion;
-  const bool holds = motion.stopping() && motion.record().newest_stop() == stop->at && !motion.runs_raw();
-  if (!holds || !core_.shows_torque()) return watch_.stop_watch().end();
-  const model::Binding* const velocity = core_.model.binding(Quantity::velocity_actual);
-  const auto speed = core_.value(Quantity::velocity_actual);
-  if (!speed || !core_.facts().moving || core_.turn.link != LinkState::online || velocity->object == model::kNoObject)
-    return;
-  const Duration period =
-      std::max(core_.drive.poll_period[static_cast<std::size_t>(velocity->poll)], core_.store.period(velocity->object));
-  if (!watch_.stop_watch().goes_on(std::abs(*speed), core_.store[velocity->object].sent_at,
-                                   core_.model.velocity_lag + period))
-    return;
-  image_.unheeded_stop = stop->at;
+  if (stop->of_client) image_.unheeded_stop = stop->at;
   if (image_.latest.stop == stop->at) image_.latest.result = CommandResult::not_reached;
   events_.event(EventKind::command, static_cast<std::uint32_t>(command_of(stop->kind)),
                 fmt::format("the motor turns on after its {}, at velocity_actual {}: the stop is owed",
-                            text(command_of(stop->kind)), *speed));
+                            text(command_of(stop->kind)), core_.value(Quantity::velocity_actual).value_or(0)));
   guard_.owed().unheeded(stop->kind, core_.store.exchange());
 }
 

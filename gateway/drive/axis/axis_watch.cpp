@@ -116,15 +116,38 @@ void AxisWatch::watch_motion(const AxisFacts& facts, bool asked) {
   seen.explained = explained(facts, asked);
   seen.asked = asked_;
   seen.stops = core_.motion.record().newest_stop();
-  seen.window =
-      std::max<Duration>(std::chrono::milliseconds(250), core_.model.velocity_lag + period(Quantity::velocity_actual));
+  seen.window = window();
   seen.position = value(Quantity::position_actual, core_.model.units_per_rev.to_double());
   seen.velocity = value(Quantity::velocity_actual, 1);
   const auto found = motion_.observe(seen);
   if (!found) return;
+  if (stop_holds()) unheeded_ = std::exchange(shown_, std::nullopt)->stop;
   tell_unexpected(found->from
                       ? fmt::format("{:.2f} turns from {:.2f}", std::abs(found->now - *found->from), *found->from)
                       : fmt::format("it turns at {:.1f} rpm", found->now / kPerRpm));
+}
+
+bool AxisWatch::stop_holds() const {
+  const Motion& motion = core_.motion;
+  return shown_ && motion.stopping() && motion.record().newest_stop() == shown_->stop.at && !motion.runs_raw() &&
+         core_.shows_torque();
+}
+
+// What was told done is so until the motor stands, or something else is asked of it: a drive that shows a stop and
+// turns on has not stopped. What noise may be counts where the position moves as well.
+std::optional<AxisWatch::Stop> AxisWatch::take_unheeded() {
+  if (unheeded_) return std::exchange(unheeded_, std::nullopt);
+  if (!stop_holds()) shown_.reset();
+  if (!shown_) return std::nullopt;
+  const auto velocity = value(Quantity::velocity_actual, 1);
+  if (!velocity || !core_.facts().moving || core_.turn.link != LinkState::online) return std::nullopt;
+  const double speed = std::abs(velocity->value);
+  const auto standstill = static_cast<double>(core_.model.standstill_velocity);
+  const double noise = core_.model.position_commanded ? standstill : model::kTimesStandstill * standstill;
+  shown_->slowing.take(speed, velocity->at);
+  const bool turns_on = speed > noise && shown_->slowing.ended(velocity->at, std::max(window(), Slowing::kPatience));
+  if (!turns_on) return std::nullopt;
+  return std::exchange(shown_, std::nullopt)->stop;
 }
 
 // It was disabled, was seen to be so, and has torque again. Where the bus takes no torque away it is always there.
@@ -222,6 +245,11 @@ std::optional<TimedValue> AxisWatch::value(Quantity quantity, double units) cons
   const auto number = core_.value(quantity);
   if (id == model::kNoObject || !number) return std::nullopt;
   return TimedValue{static_cast<double>(*number) / units, core_.store[id].sent_at};
+}
+
+Duration AxisWatch::window() const {
+  return std::max<Duration>(std::chrono::milliseconds(250),
+                            core_.model.velocity_lag + period(Quantity::velocity_actual));
 }
 
 Duration AxisWatch::period(Quantity quantity) const {

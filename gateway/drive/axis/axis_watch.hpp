@@ -9,7 +9,6 @@
 
 #include "gateway/drive/axis/axis_host.hpp"
 #include "gateway/drive/guard/guard.hpp"
-#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 #include "gateway/drive/watch/motion_watch.hpp"
 #include "gateway/drive/watch/target_watch.hpp"
@@ -34,13 +33,25 @@ class AxisWatch {
   void observe(bool asked);
   /// What is due against what was seen: once.
   [[nodiscard]] std::optional<Command> take_stop() { return std::exchange(due_, std::nullopt); }
-  [[nodiscard]] StopWatch& stop_watch() { return stop_watch_; }
+
+  /// The stop that was accepted at this point.
+  struct Stop {
+    StopKind kind = StopKind::halt;
+    AxisRecord::Point at = 0;
+    bool of_client = false;  ///< it stands in a client's result
+  };
+  /// The drive has shown it: from now on it is held against what the motor does, also where nothing else is watched.
+  void shown(Stop stop) { shown_ = Shown{stop, Slowing(core_.turn.now)}; }
+  /// The motor turns on after it: once.
+  [[nodiscard]] std::optional<Stop> take_unheeded();
 
  private:
   /// So long after its answer a start whose outcome is unknown may come.
   static constexpr Duration kLateStart = std::chrono::seconds(5);
 
   [[nodiscard]] bool explained(const AxisFacts& facts, bool asked) const;
+  /// The stop that was shown is the newest, and the motor, with torque, was not seen to stand since.
+  [[nodiscard]] bool stop_holds() const;
   void watch_motion(const AxisFacts& facts, bool asked);
   void watch_torque();
   void watch_units(const AxisFacts& facts, bool asked);
@@ -49,19 +60,26 @@ class AxisWatch {
   [[nodiscard]] std::optional<Command> reaction();
   void warn(AxisAlarm alarm, std::string text);
   [[nodiscard]] std::optional<TimedValue> value(Quantity quantity, double units) const;
+  /// In each of these a stop must make the motor slower.
+  [[nodiscard]] Duration window() const;
   /// How often it is read, or confirmed.
   [[nodiscard]] Duration period(Quantity quantity) const;
 
   AxisCore& core_;
   AxisHost& host_;
-  StopWatch stop_watch_;
   MotionWatch motion_;
   UnitsWatch units_;
   TargetWatch target_;
   AxisRecord::Point asked_ = 0;       ///< of what was accepted last that explains some motion
   Instant unknown_until_ = kLongAgo;  ///< until then a start may come of which nobody knows
-  std::optional<StopKind> stop_{};    ///< the newest of what was accepted is this stop
-  int reactions_ = 0;                 ///< so often something was done about what goes against it
+  struct Shown {
+    Stop stop;
+    Slowing slowing;
+  };
+  std::optional<Shown> shown_{};
+  std::optional<Stop> unheeded_{};  ///< one of them that the motor was seen to move after as nothing explains
+  std::optional<StopKind> stop_{};  ///< the newest of what was accepted is this stop
+  int reactions_ = 0;               ///< so often something was done about what goes against it
   std::optional<Command> due_{};
   Instant reacted_at_ = kLongAgo;  ///< a stop without a client that is accepted at this instant is a reaction
   struct {

@@ -78,7 +78,7 @@ std::string object_text(const ObjectRequest& object) {
 
 /// What it uses where the request itself names none.
 std::optional<std::int64_t> target_before(const AxisCore& core, Quantity target) {
-  if (target != Quantity::target_position) return core.running_target(target).value;
+  if (target != Quantity::target_position) return core.asked.taken(target).value_or(Wanted{}).value;
   const auto wanted = core.target_position();
   return wanted ? std::optional(wanted->value) : std::nullopt;
 }

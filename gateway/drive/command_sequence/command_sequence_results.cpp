@@ -275,10 +275,10 @@ void CommandSequence::reach(const Action& action) {
       core_.counter_wrapped = false;
       break;
     case Mark::borrow_homing:
-      if (!core_.offset_owed) core_.offset_owed = core_.value(Quantity::homing_offset);
+      core_.asked.owe(Quantity::homing_offset, core_.value(Quantity::homing_offset));
       break;
     case Mark::return_homing:
-      core_.offset_owed.reset();
+      core_.asked.forget(Quantity::homing_offset);
       break;
     case Mark::look_again:
       plan_.made = false;

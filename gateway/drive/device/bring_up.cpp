@@ -10,7 +10,7 @@ namespace axisgate::drive {
 BringUp::BringUp(const model::DriveModel& model, Duration timeout)
     : model_(model), identity_(model), node_(model), start_(timeout) {
   const auto add = [&](model::ObjectId id) {
-    if (id != model::kNoObject && std::find(reads_.begin(), reads_.end(), id) == reads_.end()) reads_.push_back(id);
+    if (id != model::kNoObject && std::ranges::find(reads_, id) == reads_.end()) reads_.push_back(id);
   };
   for (const model::AxisModel& axis : model.axes)
     for (const model::ObjectId id : axis.state_sources) add(id);  // the state comes before everything
@@ -19,8 +19,7 @@ BringUp::BringUp(const model::DriveModel& model, Duration timeout)
   for (const model::FactoryWrite& setup : model.factory_writes) add(setup.object);
   // What changes fastest is read last: the drive goes online with values that are still good.
   std::vector<PollItem> items = poll_items(model);
-  std::stable_sort(items.begin(), items.end(),
-                   [](const PollItem& a, const PollItem& b) { return a.poll_class > b.poll_class; });
+  std::ranges::stable_sort(items, std::greater(), &PollItem::poll_class);
   for (const PollItem& item : items) {
     add(item.object);
     if (item.poll_class == model::PollClass::fast) confirmed_.push_back(item.object);
@@ -47,9 +46,7 @@ void BringUp::begin() {
 bool BringUp::any_enabled(const ObjectStore& store) const {
   return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const model::AxisModel& axis) {
     const ObjectState& s = store[axis.statusword];
-    if (!s.known) return false;
-    const model::State402 state = model::state_of(static_cast<std::uint16_t>(s.number));
-    return model::holds_motor(state);
+    return s.known && model::holds_motor(model::state_of(static_cast<std::uint16_t>(s.number)));
   });
 }
 
@@ -108,12 +105,21 @@ std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {
   return std::nullopt;
 }
 
-void BringUp::answered(const bus::ExchangeResult& result) {
-  exchange_tries_ = 0;
-  if (identity_.next())
-    identity_.on_result(result);
-  else
-    node_.on_result(result);
+void BringUp::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result, const ObjectStore& store,
+                        Instant now) {
+  const bool refused = result.code == Errc::refused_by_drive;
+  if (const auto given = next(store); given && given->exchange) {
+    // Lost: asked once more, when the resynchronisation read is answered; but not for ever.
+    const bool lost = result.code == Errc::timed_out || result.code == Errc::bad_reply;
+    if (*given->exchange != exchange || !(refused || result.code == Errc::ok || lost)) return;
+    if (lost && ++exchange_tries_ < ObjectTries::kTries) return;
+    exchange_tries_ = 0;
+    identity_.next() ? identity_.on_result(result) : node_.on_result(result);
+  } else if (exchange.access == bus::Access::write) {
+    refused ? write_refused(result.for_now, now) : written();
+  } else if (result.code == Errc::ok) {
+    read_back_ = false;
+  }
 }
 
 void BringUp::written() {

@@ -33,10 +33,10 @@ class BringUp {
   };
   /// The next exchange; none: bring-up is over. The same answer until the store shows its effect.
   [[nodiscard]] std::optional<Next> next(const ObjectStore& store);
-  /// The write given by next() was acknowledged, or its outcome is unknown: it is read back next.
-  void written();
-  /// The drive refused the write given by next(). `for_now`: it has as many tries as a read (ObjectTries), ever later.
-  void write_refused(bool for_now, Instant now);
+  /// Of the exchange given by next(): a write is read back next, or has as many tries as a read (ObjectTries), ever
+  /// later, where it is refused for now. What is not answered is asked again; a Next::exchange is given up in the end.
+  void on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result, const ObjectStore& store,
+                 Instant now);
   /// The write given by next() is not to be sent before.
   [[nodiscard]] Instant write_again() const { return write_again_; }
   /// A drive that is brought up refused some of its setup for now: when it is tried again; kNever: it did not.
@@ -49,12 +49,6 @@ class BringUp {
   void end_amending(Instant now);
   /// The read given by next() is of what was just written: it does not wait for its turn.
   [[nodiscard]] bool reads_back() const { return read_back_; }
-  /// The read given by next() was a read-back, and it was answered.
-  void read_back_answered() { read_back_ = false; }
-  /// A Next::exchange was answered or refused, or is given up as unanswered.
-  void answered(const bus::ExchangeResult& result);
-  /// A Next::exchange was not answered: true after as many tries as a read has, when it is given up.
-  [[nodiscard]] bool unanswered() { return ++exchange_tries_ >= ObjectTries::kTries; }
   /// Some axis was found enabled: of its setup nothing is written until leave().
   [[nodiscard]] bool adopted() const { return adopted_; }
   void leave() { adopted_ = false; }
@@ -75,11 +69,12 @@ class BringUp {
   [[nodiscard]] bool is_configured() const { return mismatch().empty() && lacks_.empty(); }
   /// Whether a CANopen node stays started.
   [[nodiscard]] NodeStart& start() { return start_; }
-  [[nodiscard]] const NodeStart& start() const { return start_; }
   /// What a CANopen node sends by itself now, and what it would not.
   [[nodiscard]] const NodeSetup& node() const { return node_; }
 
  private:
+  void written();
+  void write_refused(bool for_now, Instant now);
   [[nodiscard]] bool any_enabled(const ObjectStore& store) const;
   [[nodiscard]] bool is_node() const { return model::is_canopen(model_); }
   [[nodiscard]] bool lacks_needed(const ObjectStore& store) const;

@@ -14,8 +14,7 @@ constexpr int kModePosition = 1, kModeTorque = 4;
 
 bool ControlFrame::carries(const bus::Exchange& write) const {
   return write.access == bus::Access::write &&
-         std::any_of(model_.composed.begin(), model_.composed.end(),
-                     [&](model::ObjectId id) { return model_.object(id).address == write.object; });
+         std::ranges::any_of(model_.composed, [&](auto id) { return model_.object(id).address == write.object; });
 }
 
 ControlFrame::Motor ControlFrame::motor(AxisSlot slot) const {

@@ -2,6 +2,7 @@
 #include "gateway/drive/device/disarming.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "gateway/model/cia402.hpp"
 
@@ -131,21 +132,13 @@ void Disarming::on_result(const bus::ExchangeResult& result, bool trusted, const
 }
 
 std::string_view text(Disarming::Outcome outcome) {
-  switch (outcome) {
-    case Disarming::Outcome::nothing_to_do:
-      return "it does not watch the gateway";
-    case Disarming::Outcome::disarmed:
-      return "no motor has torque: it misses the gateway no more";
-    case Disarming::Outcome::disabled:
-      return "no motor has torque";
-    case Disarming::Outcome::enabled:
-      return "a motor has torque: it will stop as if the gateway had died";
-    case Disarming::Outcome::unknown:
-      return "its state could not be read: it will miss the gateway";
-    case Disarming::Outcome::uncertain:
-      break;
-  }
-  return "its state could not be read, nor whether it will miss the gateway";
+  constexpr std::array<std::string_view, 6> kTexts{"it does not watch the gateway",
+                                                   "no motor has torque: it misses the gateway no more",
+                                                   "no motor has torque",
+                                                   "a motor has torque: it will stop as if the gateway had died",
+                                                   "its state could not be read: it will miss the gateway",
+                                                   "its state could not be read, nor whether it will miss the gateway"};
+  return kTexts.at(static_cast<std::size_t>(outcome));
 }
 
 }  // namespace axisgate::drive

@@ -1,39 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/drive/device/drive.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "gateway/drive/axis/publisher.hpp"
-#include "gateway/drive/device/requests.hpp"
+#include "gateway/drive/plan/admission.hpp"
+#include "gateway/drive/plan/way_out.hpp"
 
 namespace axisgate::drive {
 
 Drive::Drive(model::DriveModel model, DriveSlot slot, std::vector<AxisImage*> images, bus::Bus& bus, Runtime& runtime,
              EventRing& events)
-    : model_(std::move(model)),
-      slot_(slot),
-      bus_(bus),
-      events_(events),
-      store_(model_.objects),
-      reads_(model_, store_),
-      bring_up_(model_, bus.settings().timeout),
-      control_(model_, store_),
-      end_(model_),
-      presence_(model::is_canopen(model_), bus.settings().timeout),
-      timer_(runtime.make_timer([this] { on_time(); })) {
-  assert(images.size() == model_.axes.size());
-  AxisHost& host = *this;
+    : core_(std::move(model), slot, bus, events), timer_(runtime.make_timer([this] { on_time(); })) {
+  assert(images.size() == core_.model.axes.size());
   for (std::size_t i = 0; i < images.size(); ++i)
-    axes_.push_back(std::make_unique<Axis>(model_, static_cast<AxisSlot>(i), store_, turn_, *images[i], host));
+    core_.axes.push_back(
+        std::make_unique<Axis>(core_.model, static_cast<AxisSlot>(i), core_.store, core_.turn, *images[i], core_));
   begin_turn();
-  bus_.attach(slot_, *this);
+  core_.bus.attach(core_.slot, *this);
   after_event();
 }
 
 std::optional<BatchResult> Drive::submit(AxisSlot axis, const WriteBatch& batch, BatchCallback on_result) {
   begin_turn();
-  auto result = axes_[axis]->submit(batch, std::move(on_result));
+  auto result = core_.axes[axis]->submit(batch, std::move(on_result));
   // Callbacks of others wait for the next turn of the loop: nobody is called from inside submit().
   bring_up_to_date();
   return result;
@@ -41,301 +34,248 @@ std::optional<BatchResult> Drive::submit(AxisSlot axis, const WriteBatch& batch,
 
 void Drive::client_gone(ClientId client) {
   begin_turn();
-  for (auto& axis : axes_) axis->on_client_gone(client);
+  for (auto& axis : core_.axes) axis->on_client_gone(client);
   bring_up_to_date();
 }
 
-AxisHost::Queued Drive::queue(bus::BusJob job) {
-  job.drive = slot_;
-  const auto submission = bus_.submit(job);
-  return {submission.code, submission.id, submission.joined};
+void Drive::close(Closing why, std::function<void()> closed) {
+  begin_turn();
+  for (auto& axis : core_.axes) axis->queue().close();
+  // A bring-up would arm what is to be disarmed, and start nodes. What it has armed so far is looked at.
+  setup_.finish();
+  end_.begin(why, std::move(closed));
+  after_event();
 }
 
-void Drive::event(AxisNumber axis, EventKind kind, std::uint32_t code, std::string text) {
-  events_.add(turn_.now, axis, kind, code, std::move(text));
+void Drive::reopen() {
+  begin_turn();
+  const bool disarmed = end_.take_back();
+  for (auto& axis : core_.axes) axis->queue().reopen();
+  if (disarmed) setup_.begin(false);
+  // A bring-up that was not begun meanwhile.
+  if (core_.turn.link == LinkState::unknown) core_.presence.look_at(core_.turn.now);
+  after_event();
 }
 
 // --- What goes on the wire -----------------------------------------------------------------------------------------
 
 std::optional<bus::Exchange> Drive::on_grant(const bus::Arbiter::Grant& grant) {
   begin_turn();
-  on_wire_ = {.job = grant.id, .axis = axis_of(grant.axis), .read = {.sent_at = turn_.now}};
-  if (waits_for_chain(grant)) return std::nullopt;
-  auto exchange = keep_alive_turn(grant.priority);
-  if (!exchange) exchange = grant.id == 0 ? own_exchange() : exchange_of(grant);
-  if (exchange) exchange = whole_frame(*exchange, grant);
-  if (exchange && !may_leave(*exchange, grant)) exchange.reset();
-  if (exchange) {
-    if (exchange->part != bus::Part::next) break_chain();
-    widen(*exchange);
-    store_.begin_exchange(exchange->access != bus::Access::read);
-  } else {
+  on_wire_ = {
+      .job = grant.id, .axis = axis_of(grant.axis), .priority = grant.priority, .read = {.sent_at = core_.turn.now}};
+  if (waits_for_chain()) return std::nullopt;
+  auto exchange = exchange_of_turn();
+  if (!exchange) {
     after_event();
+    return exchange;
   }
+  if (exchange->part != bus::Part::next) break_chain();
+  using For = DriveReads::For;
+  const For whom = setup_.owns(on_wire_.job) ? For::bring_up : on_wire_.job == 0 ? For::poll : For::other;
+  core_.reads.widen(*exchange, on_wire_.read, whom, core_.turn.now);
+  core_.store.begin_exchange(exchange->access != bus::Access::read);
   return exchange;
 }
 
-std::optional<bus::Exchange> Drive::own_exchange() {
-  if (turn_.link == LinkState::unknown || turn_.link == LinkState::offline) return probe();
-  if (reads_.suspect()) return resync(0);
-  return brought_up() ? reads_.poll(turn_.now) : std::nullopt;
-}
-
-std::optional<bus::Exchange> Drive::exchange_of(const bus::Arbiter::Grant& grant) {
-  const bus::JobId id = grant.id;
-  Axis* const owner = on_wire_.axis;
-  if (reads_.suspect() && !(owner != nullptr && owner->queue().passes_resync(id))) {
-    on_wire_.becomes_own();
-    return resync(id);
-  }
-  if (owner != nullptr) {
-    const auto look = control_.concerned() ? control_.look_before(control_turn(), grant.priority == bus::Priority::stop)
-                                           : std::optional<model::ObjectId>();
-    if (look) {
-      on_wire_.becomes_own();
-      return read_of(model_, *look);
-    }
-    return owner->queue().on_grant(id);
-  }
-  if (id == jobs_.end) return next_of_end();
-  if (id == jobs_.cause) return next_of_causes();
-  return id == jobs_.setup ? next_of_bring_up() : std::nullopt;
+std::optional<bus::Exchange> Drive::exchange_of_turn() {
+  const auto task = std::ranges::find_if(tasks_, [this](DriveTask* each) { return each->takes(on_wire_); });
+  std::optional<bus::Exchange> exchange;
+  if (task != tasks_.end())
+    exchange = (*task)->next(on_wire_);
+  else if (on_wire_.axis != nullptr)
+    exchange = on_wire_.axis->queue().on_grant(on_wire_.job);
+  if (!exchange) return exchange;
+  exchange = control_.whole(on_wire_, *exchange);
+  if (!exchange) give_back(Errc::state_unsuitable);
+  return exchange && may_leave(*exchange) ? exchange : std::nullopt;
 }
 
 bool Drive::chain_open() const {
-  return std::any_of(axes_.begin(), axes_.end(), [](const auto& axis) { return axis->pending().chain_job() != 0; });
+  return std::ranges::any_of(core_.axes, [](const auto& axis) { return axis->pending().chain_job() != 0; });
 }
 
-bool Drive::waits_for_chain(const bus::Arbiter::Grant& grant) {
-  if (!chain_open() || grant.priority < bus::Priority::interactive) return false;
-  if (on_wire_.axis != nullptr && on_wire_.axis->pending().chain_job() == grant.id) return false;
+bool Drive::waits_for_chain() {
+  if (!chain_open() || on_wire_.priority < bus::Priority::interactive) return false;
+  if (on_wire_.axis != nullptr && on_wire_.axis->pending().chain_job() == on_wire_.job) return false;
   constexpr Duration kChainPause = std::chrono::milliseconds(1);
-  if (grant.id != 0) bus_.wait(grant.id, turn_.now + kChainPause);
+  if (on_wire_.job != 0) core_.bus.wait(on_wire_.job, core_.turn.now + kChainPause);
   return true;
 }
 
 // The adapter tells the drive; the client whose object it was is told here.
 void Drive::break_chain() {
-  for (auto& axis : axes_)
+  for (auto& axis : core_.axes)
     if (axis->pending().chain_job() != 0) axis->queue().on_job_ended(axis->pending().chain_job(), Errc::busy);
 }
 
-// A probe of a drive that is not there: its reply must not be one to something lost long ago.
-std::optional<bus::Exchange> Drive::probe() {
-  if (turn_.now < presence_.look_due()) return std::nullopt;
-  if (!reads_.may_probe(turn_.now)) {
-    presence_.look_at(reads_.silent_until());
-    return std::nullopt;
-  }
-  using Look = NodePresence::Look;
-  const Look look = presence_.look(turn_.link == LinkState::unknown);
-  if (look == Look::wake) {
-    presence_.look_later(turn_.now);
-    return nmt(model_.node, NmtCommand::enter_pre_operational);
-  }
-  if (look == Look::give_up) {
-    go_offline();
-    return std::nullopt;
-  }
-  if (look == Look::call && bus_.call(model_.node)) {
-    presence_.called(turn_.now);
-    return std::nullopt;
-  }
-  presence_.asked();
-  return reads_.probe(on_wire_.read);
+namespace {
+
+std::string_view why_held(Errc code) {
+  if (code == Errc::dropped_by_stop) return "a stop is newer";
+  if (code == Errc::bad_value) return "it is beyond a limit, or at another speed than was asked for";
+  return code == Errc::never_started ? "it comes too late" : "nobody has asked for it";
 }
 
-std::optional<bus::Exchange> Drive::resync(bus::JobId job) {
-  auto exchange = reads_.resync(on_wire_.read, turn_.now);
-  if (!exchange && job != 0) bus_.wait(job, reads_.silent_until());
-  return exchange;
+}  // namespace
+
+// Whoever has planned it: by what it would do to each motor that it reaches.
+bool Drive::may_leave(const bus::Exchange& exchange) {
+  // A bring-up that would enable gets no further, and does not spin.
+  constexpr Duration kHeldBackPause = std::chrono::milliseconds(500);
+  const model::ObjectId object =
+      exchange.access == bus::Access::write ? core_.model.find(exchange.object) : model::kNoObject;
+  if (object == model::kNoObject) return true;
+  const model::ObjectDef& def = core_.model.object(object);
+  const std::int64_t number = def.number(exchange.raw);
+  Sender sender{.keeps = on_wire_.keeps_alive.has_value()};
+  const Pending* const pending = on_wire_.axis == nullptr ? nullptr : on_wire_.axis->pending().find(on_wire_.job);
+  if (pending != nullptr) {
+    const CommandSequence& sequence = *pending->command_sequence;
+    sender = {.asked = sequence.asked(),
+              .stops = sequence.is_stop(),
+              .begins = asks_to_begin(sequence.batch()),
+              .by = pending->begins_by()};
+  }
+  for (auto& axis : core_.axes) {
+    if (def.slot != kNoAxis && axis != core_.axes[def.slot]) continue;
+    const Errc code = held_on_way_out(axis->core(), object, number, sender);
+    if (code == Errc::ok) continue;
+    axis->on_held_back(fmt::format("{} = {} was held back: {}", def.name, number, why_held(code)), sender.stops);
+    give_back(code);
+    if (on_wire_.axis == nullptr && on_wire_.job != 0) core_.bus.wait(on_wire_.job, core_.turn.now + kHeldBackPause);
+    return false;
+  }
+  return true;
 }
 
-void Drive::widen(bus::Exchange& exchange) {
-  using For = DriveReads::For;
-  const bool of_bring_up = on_wire_.job == jobs_.setup && jobs_.setup != 0;
-  const For whom = of_bring_up ? For::bring_up : on_wire_.job == 0 ? For::poll : For::other;
-  reads_.widen(exchange, on_wire_.read, whom, turn_.now);
-}
-
-bus::Exchange Drive::write(model::ObjectId object, std::int64_t number) const {
-  bus::Exchange exchange = read_of(model_, object);
-  exchange.access = bus::Access::write;
-  exchange.size = reads_.width(object);
-  exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(number));
-  return exchange;
+void Drive::give_back(Errc code) {
+  if (on_wire_.axis != nullptr)
+    on_wire_.axis->queue().on_job_ended(on_wire_.job, code);
+  else if (on_wire_.keeps_alive)
+    control_.failed(*on_wire_.keeps_alive);
 }
 
 // --- What comes back -----------------------------------------------------------------------------------------------
 
 void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   begin_turn();
-  const OnWire asked = on_wire_;
-  const bool trusted = reads_.counts(asked.read);
-  if (result.code == Errc::timed_out || result.code == Errc::bad_reply) {
-    const bool stop_insists =
-        std::any_of(axes_.begin(), axes_.end(), [&](const auto& axis) { return axis->pending().insists(asked.job); });
-    on_timeout(exchange, stop_insists);
-  } else if (result.code == Errc::link_lost) {
-    reads_.lost(exchange, turn_.now);                    // its reply may still come, after the line's return
-  } else if (exchange.access != bus::Access::command) {  // which nobody answers
-    on_answer(exchange, result);
-    // Nobody asked for the neighbours: whoever asked for the one asks again, in smaller company.
-    if (reads_.split(exchange, result, asked.read)) {
-      after_event();
-      return;
+  const Ended ended{
+      .exchange = exchange,
+      .result = result,
+      .asked = on_wire_,
+      .trusted = core_.reads.counts(on_wire_.read),
+      .written = exchange.access == bus::Access::write ? core_.model.find(exchange.object) : model::kNoObject};
+  if (link_.judge(ended)) {
+    const auto& [job, axis, priority, read, keeps_alive] = on_wire_;
+    bool owned = job == 0;
+    for (DriveTask* task : tasks_) {
+      owned = owned || task->owns(job);
+      task->on_result(ended);
+    }
+    if (axis != nullptr && axis->pending().find(job) != nullptr) {
+      owned = true;
+      axis->queue().on_result(job, result, read.sent_at, ended.trusted);
+    }
+    if (const model::ObjectId id = ended.written; id != model::kNoObject) {
+      // Whoever asked was given up while it was on the wire: what the drive holds now must be known all the same.
+      if (!owned && result.code == Errc::ok && ended.trusted)
+        core_.store.acknowledged(id, core_.model.object(id).number(exchange.raw), read.sent_at);
+      else if (!owned && result.code != Errc::refused_by_drive)
+        core_.store.invalidate(id);
+      if (result.code == Errc::ok) core_.reads.written(id, core_.turn.now);
     }
   }
-  on_given_up();
-  const model::ObjectId written =
-      exchange.access == bus::Access::write ? model_.find(exchange.object) : model::kNoObject;
-  control_.on_result(exchange, result, asked.keeps_alive, asked.read.sent_at, trusted, turn_.now);
-  if (asked.job != 0) {
-    bool owned = asked.job == jobs_.setup;
-    if (owned) carry_on_bring_up(exchange, result);
-    if (asked.job == jobs_.end) {
-      owned = true;
-      end_.on_result(result, trusted, store_);
-      if (!end_.next()) finish_end();
-    }
-    if (asked.axis != nullptr && asked.axis->pending().find(asked.job) != nullptr) {
-      owned = true;
-      asked.axis->queue().on_result(asked.job, result, asked.read.sent_at, trusted);
-    }
-    if (!owned && written != model::kNoObject) on_write_without_owner(exchange, result, trusted);
-  }
-  if (written != model::kNoObject && result.code == Errc::ok) reads_.written(written, turn_.now);
   after_event();
 }
 
-// Whoever asked was given up while it was on the wire: what the drive holds now must be known all the same.
-void Drive::on_write_without_owner(const bus::Exchange& exchange, const bus::ExchangeResult& result, bool trusted) {
-  const model::ObjectId id = model_.find(exchange.object);
-  if (result.code == Errc::ok && trusted)
-    store_.acknowledged(id, model_.object(id).number(exchange.raw), on_wire_.read.sent_at);
-  else if (result.code != Errc::refused_by_drive)
-    store_.invalidate(id);
-}
-
-void Drive::on_timeout(const bus::Exchange& exchange, bool stop_insists) {
-  reads_.timed_out(exchange, on_wire_.read, turn_.now);
-  const bool gone = presence_.timed_out();
-  if (turn_.link == LinkState::offline) {
-    presence_.look_later(turn_.now);
-    return;
-  }
-  // A stop has its three tries, also at a drive that was silent before it came.
-  if (gone && !stop_insists) {
-    go_offline();
-  } else if (turn_.link == LinkState::online && !reads_.expects_silence(exchange)) {
-    turn_.link = LinkState::suspect;
-  }
-}
-
-void Drive::go_offline() {
-  turn_.link = LinkState::offline;
-  jobs_.setup = 0;
-  unmap_values();
-  bus_.end_drive(slot_, Errc::offline, Errc::link_lost);
-  presence_.look_later(turn_.now);
-}
-
-void Drive::on_answer(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  // Of a read that counts lost replies out each answer may be one of them: no sign that it answers what it is asked.
-  if (!on_wire_.read.counted) presence_.answered();
-  const bool counts = reads_.counts(on_wire_.read);
-  if (reads_.answered(exchange, result, on_wire_.read, turn_.now) && turn_.link == LinkState::suspect) {
-    turn_.link = LinkState::online;
-    for (auto& axis : axes_) axis->on_invalidated();
-  }
-  if (counts) store_fields(exchange, result);
-  // The answer to a stop may be a late one: only what cannot be begins a bring-up.
-  const bool not_there = turn_.link == LinkState::unknown || turn_.link == LinkState::offline;
-  if (not_there && !reads_.suspect()) begin_bring_up(true);
-}
-
-void Drive::store_fields(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
-  const DriveReads::Taken taken = reads_.take(exchange, result, on_wire_.read, turn_.now);
-  for (const std::string& object : taken.unlike)
-    event(axes_.front()->core().model.number, EventKind::warning, 0, object);
-  if (!taken.unlike.empty() && turn_.link != LinkState::setup) judge_profile();
-  if (taken.back) judge_given_up();
-  if (taken.scales)
-    for (auto& axis : axes_) axis->on_scale();
-  if (taken.samples)
-    for (auto& axis : axes_) axis->on_samples();
-}
-
-// --- Link and time -------------------------------------------------------------------------------------------------
-
 void Drive::on_link(bool up) {
   begin_turn();
-  presence_.on_link(up, turn_.now);
-  jobs_.setup = 0;
-  unmap_values();
-  turn_.link = up ? LinkState::unknown : LinkState::link_down;
+  link_.on_link(up);
   after_event();
 }
 
 void Drive::on_job_ended(const bus::Arbiter::Ending& ending) {
   begin_turn();
   if (Axis* owner = axis_of(ending.axis)) owner->queue().on_job_ended(ending.id, ending.code);
-  if (ending.id == jobs_.end) finish_end();
-  for (bus::JobId* job : {&jobs_.setup, &jobs_.cause, &jobs_.keep_alive})
-    if (ending.id == *job) *job = 0;
+  for (DriveTask* task : tasks_)
+    if (task->owns(ending.id)) task->on_lost();
   after_event();
 }
 
+void Drive::on_unsolicited(const bus::UnsolicitedEvent& unsolicited) {
+  begin_turn();
+  switch (unsolicited.kind) {
+    case bus::UnsolicitedEvent::Kind::started:
+      link_.on_started();
+      break;
+    case bus::UnsolicitedEvent::Kind::present:
+      link_.on_present(unsolicited.state);
+      break;
+    case bus::UnsolicitedEvent::Kind::gone:
+      link_.on_gone();
+      break;
+    case bus::UnsolicitedEvent::Kind::values:
+      poll_.on_values(unsolicited.fields);
+      break;
+    case bus::UnsolicitedEvent::Kind::emergency:
+      causes_.on_emergency(unsolicited);
+      break;
+    case bus::UnsolicitedEvent::Kind::duplicate_node:
+      core_.presence.on_duplicate(core_.turn.now);
+      core_.tell_all(EventKind::warning, node(),
+                     fmt::format("two devices answer as node {}: give one of them another number", core_.model.node));
+      break;
+    case bus::UnsolicitedEvent::Kind::foreign_write:
+      // As after a timeout: whatever it holds is read anew, and every start writes what it goes by.
+      core_.store.lose_contact();
+      break;
+    case bus::UnsolicitedEvent::Kind::babbling:
+      core_.tell_all(EventKind::warning, unsolicited.code,
+                     fmt::format("floods the bus with frames 0x{:03X}", unsolicited.code));
+      break;
+  }
+  after_event();
+}
+
+// --- Time ----------------------------------------------------------------------------------------------------------
+
 void Drive::on_time() {
   begin_turn();
-  for (auto& axis : axes_) axis->on_time();
+  for (auto& axis : core_.axes) axis->on_time();
   after_event();
 }
 
 void Drive::after_event() {
   bring_up_to_date();
-  for (auto& axis : axes_) axis->queue().call_back();
-  tell_closed();
+  for (auto& axis : core_.axes) axis->queue().call_back();
+  end_.call_back();
 }
 
 void Drive::bring_up_to_date() {
-  for (auto& axis : axes_) {
+  for (auto& axis : core_.axes) {
     axis->observe();
-    const AxisCore& core = axis->core();
-    if (core.motion.end_wants_position()) reads_.first(core.object_of(Quantity::position_actual));
-    if (core.motion.rest_wants_sample(core.facts())) reads_.hurry(core.motion_object(), turn_.now);
+    poll_.hurry(*axis);
   }
-  reads_.refresh(turn_.now);
-  if (brought_up()) {
-    for (auto& axis : axes_)
-      for (const model::Check& check : model_.checks) axis->set_alarm(check.alarm, false);
-    judge_checks();
-    leave_adoption();
-    amend_setup();
-  }
-  const bool duplicated = presence_.duplicated(turn_.now);
-  for (auto& axis : axes_) axis->set_alarm(AxisAlarm::duplicate_node, duplicated);
-  const Instant amends = brought_up() && jobs_.setup == 0 ? bring_up_.amend_due() : kNever;
-  Instant next =
-      std::min({duplicated ? presence_.duplicate_until() : kNever, bring_up_.start().deadline(turn_.now), amends});
-  for (auto& axis : axes_) {
+  core_.reads.refresh(core_.turn.now);
+  setup_.go_on();
+  core_.set_alarm(AxisAlarm::duplicate_node, core_.presence.duplicated(core_.turn.now));
+  Instant next = kNever;
+  for (auto& axis : core_.axes) {
     axis->publish();
     next = std::min({next, axis->next_deadline(), stale_deadline(axis->core())});
-    if (axis->queue().has_due()) next = turn_.now;
+    if (axis->queue().has_due()) next = core_.turn.now;
   }
-  schedule_causes();
-  watch_positions();
-  next = std::min(next, schedule_keep_alive());
+  // The keep-alive, which may take any turn, is the last that asks for one of its own.
+  for (auto task = tasks_.rbegin(); task != tasks_.rend(); ++task) next = std::min(next, (*task)->deadline());
   timer_->expires_at(next);
-  if (turn_.link == LinkState::link_down) {
-    bus_.set_poll_due(slot_, kNever);
-  } else if (turn_.link == LinkState::unknown || turn_.link == LinkState::offline) {
-    bus_.set_poll_due(slot_, presence_.look_due());
-  } else if (reads_.suspect()) {
-    bus_.set_poll_due(slot_, reads_.resync_due(turn_.now));
-  } else {
-    bus_.set_poll_due(slot_, brought_up() && !chain_open() ? reads_.poll_due() : kNever);
-  }
+  core_.bus.set_poll_due(core_.slot, poll_due());
+}
+
+Instant Drive::poll_due() {
+  if (core_.turn.link == LinkState::link_down) return kNever;
+  if (core_.sought()) return core_.presence.look_due();
+  if (core_.reads.suspect()) return core_.reads.resync_due(core_.turn.now);
+  return core_.brought_up() && !chain_open() ? core_.reads.poll_due() : kNever;
 }
 
 }  // namespace axisgate::drive

@@ -88,10 +88,6 @@ bool DriveControl::may_repeat(const Turn& turn) const {
   return keep_alive_.wanted() && turn.online && !turn.adopted && !turn.suspect;
 }
 
-std::optional<KeepAlive::Repeat> DriveControl::repeat_for(const AxisTurn& axis) const {
-  return keep_alive_.repeat(axis.core, axis.stopping, axis.live);
-}
-
 // The newest exchange of this drive was a look at the state of all its axes: what it showed is what the frame that
 // follows goes by. A motor that trips between the two is turned on again by that frame; no protocol of this drive can
 // tell sooner.
@@ -108,7 +104,7 @@ std::optional<DriveControl::Due> DriveControl::due(const Turn& turn) const {
   for (std::size_t slot = 0; slot < turn.axes.size(); ++slot) {
     const auto axis = static_cast<AxisSlot>(slot);
     if (keep_alive_.due(axis) > turn.now) continue;
-    const auto repeat = repeat_for(turn.axes[slot]);
+    const auto repeat = keep_alive_.repeat(turn.axes[slot].core, turn.axes[slot].stopping, turn.axes[slot].live);
     if (!repeat) continue;
     const model::ObjectDef& def = model_.object(repeat->object);
     const bus::Exchange write{model_.node, bus::Access::write, def.address, def.size,
@@ -124,7 +120,8 @@ Instant DriveControl::next_due(const Turn& turn) const {
   Instant next = kNever;
   if (may_repeat(turn))
     for (std::size_t slot = 0; slot < turn.axes.size(); ++slot)
-      if (repeat_for(turn.axes[slot])) next = std::min(next, keep_alive_.due(static_cast<AxisSlot>(slot)));
+      if (const AxisTurn& axis = turn.axes[slot]; keep_alive_.repeat(axis.core, axis.stopping, axis.live))
+        next = std::min(next, keep_alive_.due(static_cast<AxisSlot>(slot)));
   return next;
 }
 

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "adapters/bus/exchange.hpp"
 #include "gateway/drive/device/disarming.hpp"
@@ -35,10 +36,23 @@ class DriveEnd {
   explicit DriveEnd(const model::DriveModel& model) : disarming_(model) {}
 
   /// True: there is something to be asked of it.
-  bool begin(Closing why, Known known, const ObjectStore& store, std::function<void()> closed);
+  bool begin(Closing why, Known known, const ObjectStore& store, std::function<void()> closed) {
+    why_ = why;
+    closed_ = std::move(closed);
+    disarming_.give_up();
+    if (known == Known::nothing || (known == Known::in_part && why == Closing::look)) return false;
+    if (why == Closing::look)
+      disarming_.begin_look(store);
+    else
+      disarming_.begin(store, known == Known::in_part);
+    return true;
+  }
   [[nodiscard]] bool begun() const { return why_.has_value(); }
   /// It stays after all: true where what makes it miss the gateway may have been cleared.
-  bool take_back();
+  bool take_back() {
+    closed_ = nullptr;
+    return std::exchange(why_, std::nullopt) != Closing::look;
+  }
 
   /// The next exchange; none: there is none left.
   [[nodiscard]] std::optional<Disarming::Next> next() const { return disarming_.next(); }
@@ -47,9 +61,12 @@ class DriveEnd {
   }
   [[nodiscard]] Disarming::Outcome outcome() const { return disarming_.outcome(); }
   /// What the log says at its end; empty: nothing.
-  [[nodiscard]] std::string event_text() const;
+  [[nodiscard]] std::string event_text() const {
+    if (why_ != Closing::gateway_ends || outcome() == Disarming::Outcome::nothing_to_do) return {};
+    return "the gateway ends: " + std::string(text(outcome()));
+  }
   /// Nothing of the drive is on the wire or waits for it: whom to answer, once; none: nobody, or the answer was given.
-  [[nodiscard]] std::function<void()> take_closed();
+  [[nodiscard]] std::function<void()> take_closed() { return why_ ? std::exchange(closed_, nullptr) : nullptr; }
 
  private:
   Disarming disarming_;

@@ -20,7 +20,11 @@ DriveReads::DriveReads(model::DriveModel& model, ObjectStore& store)
       constants_(model.constants.size()),
       mapped_(model.objects.size(), false) {
   for (const model::ObjectDef& object : model.objects) width_.push_back(object.size);
-  map_unsolicited();
+  // What a drive sends by itself, whatever we tell it: mapped for good.
+  for (const model::ObjectId id : model.unsolicited.objects) {
+    mapped_[id] = true;
+    if (model.unsolicited.every > Duration{} && !tells_state(id)) store_.set_period(id, model.unsolicited.every);
+  }
 }
 
 // --- What is read next -----------------------------------------------------------------------------------------------
@@ -36,18 +40,17 @@ void DriveReads::restart(Instant now) {
   plan_.restart(now);
 }
 
-std::optional<bus::Exchange> drive::DriveReads::poll(Instant now) const {
+std::optional<bus::Exchange> DriveReads::poll(Instant now) const {
   const auto object = plan_.next(now);
   if (!object) return std::nullopt;
   return read_of(model_, *object);
 }
 
 bool DriveReads::tells_state(model::ObjectId object) const {
-  return std::any_of(model_.axes.begin(), model_.axes.end(),
-                     [object](const model::AxisModel& axis) { return drive::tells_state(axis, object); });
+  return std::ranges::any_of(model_.axes, [&](const auto& axis) { return drive::tells_state(axis, object); });
 }
 
-void drive::DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
+void DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
   if (asked.resync || asked.probe || asked.counted) return;
   blocks_.widen(exchange, [&](model::ObjectId id) {
     if (store_[id].refused) return false;
@@ -68,7 +71,7 @@ void DriveReads::refresh(Instant now) {
 
 // --- Late replies ----------------------------------------------------------------------------------------------------
 
-std::optional<bus::Exchange> drive::DriveReads::resync(Asked& asked, Instant now) {
+std::optional<bus::Exchange> DriveReads::resync(Asked& asked, Instant now) {
   const auto candidate = resync_.candidate();
   if (candidate && !resync_.exhausted()) {
     resync_.resync_sent(*candidate);
@@ -82,7 +85,7 @@ std::optional<bus::Exchange> drive::DriveReads::resync(Asked& asked, Instant now
   return probe_read(model_);
 }
 
-bus::Exchange drive::DriveReads::after_silence(Asked& asked, bool Asked::*trusted) {
+bus::Exchange DriveReads::after_silence(Asked& asked, bool Asked::*trusted) {
   const auto candidate = resync_.candidate();
   (candidate ? asked.*trusted : asked.counted) = true;
   return read_of(model_, candidate ? *candidate : resync_.counted());
@@ -95,7 +98,7 @@ bool DriveReads::may_probe(Instant now) {
   return true;
 }
 
-bus::Exchange drive::DriveReads::probe(Asked& asked) {
+bus::Exchange DriveReads::probe(Asked& asked) {
   if (resync_.suspect()) return after_silence(asked, &Asked::probe);
   asked.probe = true;
   // A drive whose state is unresponsive is there all the same.
@@ -104,7 +107,7 @@ bus::Exchange drive::DriveReads::probe(Asked& asked) {
 
 // --- What comes back -------------------------------------------------------------------------------------------------
 
-void drive::DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
+void DriveReads::timed_out(const bus::Exchange& exchange, const Asked& asked, Instant now) {
   resync_.lost(exchange, now);
   const bool plain = exchange.access == bus::Access::read && !asked.resync && !asked.probe && !asked.counted;
   if (plain && !silent_) silent_ = {exchange, asked};
@@ -112,8 +115,8 @@ void drive::DriveReads::timed_out(const bus::Exchange& exchange, const Asked& as
 }
 
 // An error answer is no answered resynchronisation read; the next candidate is tried.
-bool drive::DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
-                                 Instant now) {
+bool DriveReads::answered(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                          Instant now) {
   const bool proves = result.code == Errc::ok && (asked.resync || asked.probe);
   if (proves) {
     resync_.answered();
@@ -126,7 +129,7 @@ bool drive::DriveReads::answered(const bus::Exchange& exchange, const bus::Excha
   return proves;
 }
 
-bool drive::DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked) {
+bool DriveReads::split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked) {
   if (!asked.widened || resync_.suspect()) return false;
   if (result.code != Errc::refused_by_drive) {
     blocks_.answered(exchange);
@@ -156,7 +159,7 @@ void DriveReads::was_silent(Instant now) {
   for (const bus::Neighbour& neighbour : exchange.more) count(neighbour.object);
 }
 
-bool drive::DriveReads::expects_silence(const bus::Exchange& exchange) const {
+bool DriveReads::expects_silence(const bus::Exchange& exchange) const {
   const model::ObjectId id = exchange.access == bus::Access::read ? model_.find(exchange.object) : model::kNoObject;
   return id != model::kNoObject && tries_.given_up(id);
 }
@@ -169,8 +172,8 @@ void DriveReads::in_vain(model::ObjectId object, const ObjectTries::Refusal& ref
 
 // What the drive does not have is not asked again until the next bring-up; it must have answered something before it is
 // believed, since a drive that still starts may refuse all. Any other refusal may pass.
-void drive::DriveReads::take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result,
-                                     const Asked& asked, Instant now) {
+void DriveReads::take_refusal(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                              Instant now) {
   const model::ObjectId id = model_.find(exchange.object);
   if (id == model::kNoObject) return;
   if (asked.widened) return;  // which of them it was is not known yet
@@ -202,8 +205,8 @@ std::string width_text(const model::ObjectDef& object, const bus::ReplyField& fi
 
 }  // namespace
 
-drive::DriveReads::Taken drive::DriveReads::take(const bus::Exchange& exchange, const bus::ExchangeResult& result,
-                                                 const Asked& asked, Instant now) {
+DriveReads::Taken DriveReads::take(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked,
+                                   Instant now) {
   Taken taken;
   if (exchange.access != bus::Access::read) return taken;
   if (result.code == Errc::refused_by_drive) {
@@ -218,8 +221,8 @@ drive::DriveReads::Taken drive::DriveReads::take(const bus::Exchange& exchange, 
   return taken;
 }
 
-void drive::DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked,
-                                   Taken& taken, Instant now) {
+void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked,
+                            Taken& taken, Instant now) {
   const model::ObjectId id = model_.find(field.object);
   if (id == model::kNoObject) return;
   const model::ObjectDef& object = model_.object(id);
@@ -281,14 +284,6 @@ void DriveReads::map(model::ObjectId object, std::optional<Duration> event) {
   store_.set_period(object, event.value_or(model_.canopen.confirm));
 }
 
-// What a drive sends by itself, whatever we tell it: mapped for good.
-void DriveReads::map_unsolicited() {
-  for (const model::ObjectId id : model_.unsolicited.objects) {
-    mapped_[id] = true;
-    if (model_.unsolicited.every > Duration{} && !tells_state(id)) store_.set_period(id, model_.unsolicited.every);
-  }
-}
-
 void DriveReads::unmap(Instant now) {
   for (std::size_t i = 0; i < mapped_.size(); ++i) {
     if (!mapped_[i]) continue;
@@ -303,7 +298,7 @@ void DriveReads::outdate_mapped() {
     if (mapped_[i]) store_.outdate(static_cast<model::ObjectId>(i));
 }
 
-void drive::DriveReads::take_unsolicited(const bus::ReplyFields& fields, Instant now) {
+void DriveReads::take_unsolicited(const bus::ReplyFields& fields, Instant now) {
   for (const bus::ReplyField& field : fields) {
     const model::ObjectId id = model_.find(field.object);
     if (id == model::kNoObject || !mapped_[id] || field.size != model_.object(id).size) continue;

@@ -47,7 +47,7 @@ class DriveReads {
   void hurry(model::ObjectId object, Instant now) { plan_.hurry(object, now); }
   void hurry_state(const model::AxisModel& axis, Instant now);
   /// It is read next, before all that is overdue.
-  void first(model::ObjectId object) { plan_.first(object); }
+  void first(model::ObjectId object) { plan_.hurry(object, kLongAgo); }
   /// A write of it was acknowledged.
   void written(model::ObjectId object, Instant now) { plan_.written(object, now); }
   /// What was invalidated since the last call is read again.
@@ -118,7 +118,6 @@ class DriveReads {
   /// A position that comes by TPDO is read after so long without one while its axis moves.
   static constexpr Duration kMovingConfirm = std::chrono::milliseconds(250);
 
-  void map_unsolicited();
   /// After the silence, of a drive whose replies are distinguished still. `trusted`: what its answer then is.
   [[nodiscard]] bus::Exchange after_silence(Asked& asked, bool Asked::*trusted);
   void take_field(const bus::Exchange& exchange, const bus::ReplyField& field, const Asked& asked, Taken& taken,

@@ -5,6 +5,8 @@
 // which gave no sign of life is asked by SDO once, then called, and asked again after so many calls alone. Never sends.
 #pragma once
 
+#include <utility>
+
 #include "adapters/bus/backoff.hpp"
 #include "adapters/bus/exchange.hpp"
 
@@ -23,19 +25,37 @@ class NodePresence {
   NodePresence(bool is_node, Duration timeout) : is_node_(is_node), backoff_(timeout) {}
 
   // What it does.
-  void on_link(bool up, Instant now);
+  void on_link(bool up, Instant now) {
+    timeouts_ = 0;
+    heard_ = asked_ = false;
+    state_ = bus::NodeState::unknown;
+    backoff_.reset();
+    look_due_ = up ? now : kNever;  // where a reply is still owed, the probe keeps silence first
+  }
   void answered() { timeouts_ = 0; }
   /// An exchange got no answer: true from the timeout on by which it counts as gone.
   bool timed_out() { return ++timeouts_ >= kMaxTimeouts; }
   /// It says that it has started.
-  void on_started();
+  void on_started() {
+    heard_ = true;
+    state_ = bus::NodeState::pre_operational;
+    timeouts_ = 0;
+  }
   /// A sign of life: true where it tells something new.
-  bool on_present(bus::NodeState state);
+  bool on_present(bus::NodeState state) {
+    const bool heard_before = std::exchange(heard_, true);
+    return std::exchange(state_, state) != state || !heard_before;
+  }
   /// Its signs of life have ceased. `was_there`: it counted as there; the search for it begins with the shortest pause.
-  void on_gone(bool was_there);
+  void on_gone(bool was_there) {
+    heard_ = false;
+    if (!was_there) return;
+    timeouts_ = 0;
+    backoff_.reset();
+  }
   void on_duplicate(Instant now) { duplicate_until_ = now + kDuplicateStands; }
   [[nodiscard]] bool duplicated(Instant now) const { return now < duplicate_until_; }
-  [[nodiscard]] Instant duplicate_until() const { return duplicate_until_; }
+  [[nodiscard]] Instant duplicate_due(Instant now) const { return duplicated(now) ? duplicate_until_ : kNever; }
 
   // How it is looked for.
   [[nodiscard]] Instant look_due() const { return look_due_; }
@@ -53,9 +73,20 @@ class NodePresence {
   };
   /// What is sent now. `first`: it was not found to be gone since the link came up. An unanswered call counts as a
   /// timeout here.
-  [[nodiscard]] Look look(bool first);
-  void called(Instant now);
-  void asked();
+  [[nodiscard]] Look look(bool first) {
+    if (is_node_ && heard_ && state_ == bus::NodeState::stopped) return Look::wake;
+    // A call that nobody has answered is a timeout as well, but it kept nobody from the wire.
+    if (first && !heard_ && calls_ > 0 && ++timeouts_ >= kMaxTimeouts) return Look::give_up;
+    return is_node_ && asked_ && !heard_ && calls_ < kCallsPerQuestion ? Look::call : Look::ask;
+  }
+  void called(Instant now) {
+    ++calls_;
+    look_later(now);
+  }
+  void asked() {
+    asked_ = true;
+    calls_ = 0;
+  }
 
  private:
   bool is_node_;

@@ -142,8 +142,7 @@ void NodeSetup::begin_tpdo(std::size_t at) {
   at_ = at;
   entry_at_ = 0;
   step_ = at_ == model_.canopen.tpdos.size() ? Step::start : Step::read_cob_id;
-  if (step_ == Step::start) return;
-  taken_ = {tpdo().number, {}, std::nullopt};
+  if (step_ != Step::start) taken_ = {tpdo().number, {}, std::nullopt};
 }
 
 void NodeSetup::give_up(const std::string& why) {
@@ -151,35 +150,14 @@ void NodeSetup::give_up(const std::string& why) {
   begin_tpdo(at_ + 1);
 }
 
-void NodeSetup::refuse_entry(const bus::ExchangeResult& result) {
-  note(fmt::format("does not take {} (abort 0x{:08X}): it is polled", model_.object(tpdo().map[entry_at_]).name,
-                   result.detail));
-}
-
-void NodeSetup::after_entries() {
-  if (taken_.objects.empty()) return give_up("takes none of its objects");
-  step_ = Step::count;
-}
-
-void NodeSetup::after_type() {
-  step_ = Step::inhibit;
-  if (!tpdo().inhibit) after_inhibit();
-}
-
-void NodeSetup::after_inhibit() {
-  step_ = Step::event;
-  if (!tpdo().event_ms) step_ = Step::enable;
-}
-
-void NodeSetup::check_enabled(const bus::ExchangeResult& result) {
-  if (refused(result) || (raw_of(result) & kInvalid) != 0 || (raw_of(result) & kIdBits) != (cob_id_ & kIdBits))
-    return give_up("does not read back as enabled");
-  mapped_.push_back(taken_);
-  begin_tpdo(at_ + 1);
-}
-
 void NodeSetup::on_result(const bus::ExchangeResult& result) {
-  const auto why = [&](const char* what) { return fmt::format("{} (abort 0x{:08X})", what, result.detail); };
+  const auto why = [&](const std::string& what) { return fmt::format("{} (abort 0x{:08X})", what, result.detail); };
+  const auto after_inhibit = [&] { return tpdo().event_ms ? Step::event : Step::enable; };
+  // What does not hold costs this TPDO.
+  const auto must = [&](bool holds, const std::string& otherwise, Step next) {
+    if (!holds) return give_up(otherwise);
+    step_ = next;
+  };
   switch (step_) {
     case Step::pre_operational:
       return begin_unused(0);
@@ -199,30 +177,25 @@ void NodeSetup::on_result(const bus::ExchangeResult& result) {
       step_ = Step::disable;
       return;
     case Step::disable:
-      if (refused(result)) return give_up(why("cannot be disabled"));
-      step_ = Step::clear_count;
-      return;
+      return must(!refused(result), why("cannot be disabled"), Step::clear_count);
     case Step::clear_count:
-      if (refused(result)) return give_up(why("cannot be mapped anew"));
-      step_ = Step::entry;
-      return;
+      return must(!refused(result), why("cannot be mapped anew"), Step::entry);
     case Step::entry:
       if (refused(result))
-        refuse_entry(result);
+        note(why("does not take " + model_.object(tpdo().map[entry_at_]).name) + ": it is polled");
       else
         taken_.objects.push_back(tpdo().map[entry_at_]);
-      if (++entry_at_ == tpdo().map.size()) after_entries();
-      return;
+      if (++entry_at_ < tpdo().map.size()) return;
+      return must(!taken_.objects.empty(), "takes none of its objects", Step::count);
     case Step::count:
-      if (refused(result)) return give_up(why("does not take its mapping"));
-      step_ = Step::type;
-      return;
+      return must(!refused(result), why("does not take its mapping"), Step::type);
     case Step::type:
-      if (refused(result)) return give_up(why("does not take its transmission type"));
-      return after_type();
+      return must(!refused(result), why("does not take its transmission type"),
+                  tpdo().inhibit ? Step::inhibit : after_inhibit());
     case Step::inhibit:
       if (refused(result)) note(why("takes no inhibit time"));
-      return after_inhibit();
+      step_ = after_inhibit();
+      return;
     case Step::event:
       if (refused(result))
         note(why("takes no event timer") + ": its values are confirmed by reads");
@@ -231,9 +204,7 @@ void NodeSetup::on_result(const bus::ExchangeResult& result) {
       step_ = Step::enable;
       return;
     case Step::enable:
-      if (refused(result)) return give_up(why("cannot be enabled"));
-      step_ = Step::read_count;
-      return;
+      return must(!refused(result), why("cannot be enabled"), Step::read_count);
     case Step::read_count:
       if (refused(result) || raw_of(result) != taken_.objects.size()) return give_up(kOtherMapping);
       entry_at_ = 0;
@@ -244,11 +215,13 @@ void NodeSetup::on_result(const bus::ExchangeResult& result) {
       if (++entry_at_ == taken_.objects.size()) step_ = Step::read_enabled;
       return;
     case Step::read_enabled:
-      return check_enabled(result);
+      if (refused(result) || (raw_of(result) & kInvalid) != 0 || (raw_of(result) & kIdBits) != (cob_id_ & kIdBits))
+        return give_up("does not read back as enabled");
+      mapped_.push_back(taken_);
+      return begin_tpdo(at_ + 1);
     case Step::start:
-      step_ = Step::over;
-      return;
     case Step::over:
+      step_ = Step::over;
       return;
   }
 }

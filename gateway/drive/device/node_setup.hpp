@@ -90,11 +90,6 @@ class NodeSetup {
   void begin_tpdo(std::size_t at);
   void begin_unused(std::size_t at);
   void give_up(const std::string& why);
-  void refuse_entry(const bus::ExchangeResult& result);
-  void after_entries();
-  void after_type();
-  void after_inhibit();
-  void check_enabled(const bus::ExchangeResult& result);
   void note(std::string text) { notes_.push_back("TPDO " + std::to_string(number()) + " " + std::move(text)); }
 
   const model::DriveModel& model_;

@@ -26,9 +26,18 @@ class NodeStart {
   void commanded(Instant now) { commanded_at_ = now; }
   /// A sign of life of a node that was commanded to start: true once for each start that it has left, missed or was
   /// taken out of.
-  [[nodiscard]] bool has_left(bus::NodeState state, Instant now) const;
+  [[nodiscard]] bool has_left(bus::NodeState state, Instant now) const {
+    const bool elsewhere = state == bus::NodeState::pre_operational || state == bus::NodeState::stopped;
+    return elsewhere && !left_ && now - commanded_at_ > kNmtSettles;
+  }
   /// It has left: the pause before it is set up again.
-  Duration leave(Instant now);
+  Duration leave(Instant now) {
+    if (now - commanded_at_ > kStartHeld) backoff_.reset();
+    const Duration pause = backoff_.next();
+    due_ = now + pause;
+    left_ = true;
+    return pause;
+  }
   /// The node is to be set up and started again.
   [[nodiscard]] bool is_due(Instant now) const { return left_ && now >= due_; }
   /// When is_due() changes by time alone.

@@ -55,27 +55,24 @@ std::string place_of(const model::DriveModel& model, model::ObjectId object) {
 
 std::string uses_of(const model::DriveModel& model, model::ObjectId object) {
   std::vector<std::string> uses;
-  const auto add = [&uses](std::string use) {
-    if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(std::move(use));
+  const auto has = [](const auto& list, const auto& what) { return std::ranges::find(list, what) != list.end(); };
+  const auto add = [&](std::string use) {
+    if (!has(uses, use)) uses.push_back(std::move(use));
   };
   for (const model::AxisModel& axis : model.axes) {
     if (axis.needs_for_state(object)) add(fmt::format("the state of axis {}", axis.number));
     for (const model::Binding& binding : axis.bindings) {
-      const bool of_bits = std::any_of(binding.bits.begin(), binding.bits.end(),
-                                       [object](const model::BitField& field) { return field.object == object; });
+      const bool of_bits = std::ranges::find(binding.bits, object, &model::BitField::object) != binding.bits.end();
       if (binding.object == object || of_bits) add(std::string(row(binding.quantity).name));
     }
-    if (std::find(axis.fault_words.begin(), axis.fault_words.end(), object) != axis.fault_words.end())
-      add("the causes of faults");
+    if (has(axis.fault_words, object)) add("the causes of faults");
   }
   for (const model::Check& check : model.checks)
     if (check.bad.object == object) add("the check " + check.name);
-  if (std::find(model.loss_objects.begin(), model.loss_objects.end(), object) != model.loss_objects.end())
-    add("what stops the drive when the gateway dies");
+  if (has(model.loss_objects, object)) add("what stops the drive when the gateway dies");
   for (const model::ObjectWrite& setup : model.setup)
     if (setup.object == object) add("the set-up");
-  const std::vector<model::ObjectId> constants = model::constant_objects(model);
-  if (std::find(constants.begin(), constants.end(), object) != constants.end()) add("the axis's scales");
+  if (has(model::constant_objects(model), object)) add("the axis's scales");
   if (uses.empty()) add("its commands");
   return fmt::format("{}", fmt::join(uses, ", "));
 }

@@ -22,8 +22,7 @@ bool comes_unsolicited(const model::DriveModel& model, model::ObjectId id) {
   const auto has = [id](const std::vector<model::ObjectId>& list) {
     return std::find(list.begin(), list.end(), id) != list.end();
   };
-  const bool state = std::any_of(model.axes.begin(), model.axes.end(),
-                                 [&](const model::AxisModel& axis) { return has(axis.state_sources); });
+  const bool state = std::ranges::any_of(model.axes, [&](const auto& axis) { return has(axis.state_sources); });
   return !state && has(model.unsolicited.objects);
 }
 
@@ -97,35 +96,28 @@ void PollPlan::unmap_all(Instant now) {
 
 void PollPlan::received(model::ObjectId object, Instant now) {
   Entry* e = entry(object);
-  if (e != nullptr && e->silence != Duration{} && !e->dropped) e->due = now + std::min(e->silence, e->limit);
+  if (e != nullptr && e->silence != Duration{}) e->due = now + std::min(e->silence, e->limit);
 }
 
 void PollPlan::confirm_within(model::ObjectId object, std::optional<Duration> limit, Instant now) {
   Entry* e = entry(object);
-  if (e == nullptr || e->silence == Duration{} || e->dropped) return;
+  if (e == nullptr || e->silence == Duration{}) return;
   const Duration before = std::exchange(e->limit, limit.value_or(Duration::max()));
   if (e->limit < before) e->due = std::min(e->due, now + e->limit);
 }
 
 void PollPlan::hurry(model::ObjectId object, Instant now) {
-  Entry* e = entry(object);
-  if (e != nullptr && !e->dropped) e->due = std::min(e->due, now);
-}
-
-void PollPlan::first(model::ObjectId object) {
-  Entry* e = entry(object);
-  if (e != nullptr && !e->dropped) e->due = kLongAgo;
+  if (Entry* e = entry(object)) e->due = std::min(e->due, now);
 }
 
 const PollPlan::Entry* PollPlan::earliest() const {
-  const auto found = std::min_element(entries_.begin(), entries_.end(),
-                                      [](const Entry& a, const Entry& b) { return a.asked_at() < b.asked_at(); });
+  const auto found = std::ranges::min_element(entries_, {}, &Entry::asked_at);
   return found == entries_.end() ? nullptr : &*found;
 }
 
 PollPlan::Entry* PollPlan::entry(model::ObjectId object) {
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
-  return found == entries_.end() ? nullptr : &*found;
+  const auto found = std::ranges::find(entries_, object, &Entry::object);
+  return found == entries_.end() || found->dropped ? nullptr : &*found;
 }
 
 std::optional<model::ObjectId> PollPlan::next(Instant now) const {
@@ -135,8 +127,7 @@ std::optional<model::ObjectId> PollPlan::next(Instant now) const {
 }
 
 bool PollPlan::due(model::ObjectId object, Instant now) const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const Entry& e) { return e.object == object && e.asked_at() <= now; });
+  return std::ranges::any_of(entries_, [&](const Entry& e) { return e.object == object && e.asked_at() <= now; });
 }
 
 Instant PollPlan::next_due() const {
@@ -169,8 +160,7 @@ void PollPlan::drop(model::ObjectId object) {
 }
 
 void PollPlan::rest(model::ObjectId object, Instant until) {
-  Entry* e = entry(object);
-  if (e != nullptr && !e->dropped) e->due = e->rests = until;
+  if (Entry* e = entry(object)) e->due = e->rests = until;
 }
 
 void PollPlan::wake(Instant now) {
@@ -183,7 +173,7 @@ void PollPlan::wake(Instant now) {
 
 void PollPlan::written(model::ObjectId object, Instant now) {
   Entry* e = entry(object);
-  if (e != nullptr && e->period == Duration{} && !e->dropped) e->due = std::min(e->due, now);
+  if (e != nullptr && e->period == Duration{}) e->due = std::min(e->due, now);
 }
 
 void PollPlan::refresh(Instant now) {
@@ -192,11 +182,6 @@ void PollPlan::refresh(Instant now) {
     now += kRefreshPause;
     e.due = std::min(e.due, now);
   }
-}
-
-Duration PollPlan::period(model::ObjectId object) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.object == object; });
-  return found == entries_.end() ? Duration{} : found->period;
 }
 
 }  // namespace axisgate::drive

@@ -37,10 +37,9 @@ class PollPlan {
   void received(model::ObjectId object, Instant now);
   /// What comes by TPDO is read after so long without one at the latest, from now on; none: as it was mapped.
   void confirm_within(model::ObjectId object, std::optional<Duration> limit, Instant now);
-  /// It is read as soon as its turn comes: something was heard that it will tell of.
+  /// It is read as soon as its turn comes: something was heard that it will tell of. `now`: kLongAgo: before all that
+  /// is overdue, an answer waits for it.
   void hurry(model::ObjectId object, Instant now);
-  /// It is read next, before all that is overdue: an answer waits for it.
-  void first(model::ObjectId object);
   /// The object to read now: the one longest overdue. None before next_due().
   [[nodiscard]] std::optional<model::ObjectId> next(Instant now) const;
   [[nodiscard]] bool due(model::ObjectId object, Instant now) const;
@@ -59,8 +58,6 @@ class PollPlan {
   /// What the drive holds was invalidated: those of class once are read again, one by one, so that the others keep
   /// their beat.
   void refresh(Instant now);
-  /// 0 for class once.
-  [[nodiscard]] Duration period(model::ObjectId object) const;
 
  private:
   struct Entry {
@@ -77,6 +74,7 @@ class PollPlan {
   };
   static constexpr Duration kRefreshPause = std::chrono::milliseconds(20);
   [[nodiscard]] const Entry* earliest() const;
+  /// Null where it is none of the plan, or the drive does not have it.
   [[nodiscard]] Entry* entry(model::ObjectId object);
   std::vector<Entry> entries_;
 };

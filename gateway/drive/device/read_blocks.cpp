@@ -57,8 +57,7 @@ void ReadBlocks::group_answers() {
   const auto& objects = model_.objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const auto has = [&](const Block& b) { return same_query(model_.object(b.objects.front()), objects[i]); };
-    const bool grouped =
-        std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.one_answer && has(b); });
+    const bool grouped = std::ranges::any_of(blocks_, [&](const Block& b) { return b.one_answer && has(b); });
     if (objects[i].emulated || !objects[i].readable || grouped) continue;
     Block block{{}, 0, true};
     for (std::size_t k = i; k < objects.size() && block.objects.size() < bus::kMaxReplyFields; ++k) {
@@ -69,17 +68,14 @@ void ReadBlocks::group_answers() {
         block.objects.push_back(static_cast<model::ObjectId>(k));
     }
     if (block.objects.size() < 2) continue;
-    std::sort(block.objects.begin(), block.objects.end(), [&](model::ObjectId a, model::ObjectId b) {
-      return model_.object(a).address < model_.object(b).address;
-    });
+    std::ranges::sort(block.objects, {}, [&](auto id) { return model_.object(id).address; });
     blocks_.push_back(std::move(block));
   }
 }
 
 void ReadBlocks::pack(const std::vector<model::ObjectId>& neighbours) {
   std::vector<model::ObjectId> sorted = neighbours;
-  std::sort(sorted.begin(), sorted.end(),
-            [&](model::ObjectId a, model::ObjectId b) { return model_.object(a).address < model_.object(b).address; });
+  std::ranges::sort(sorted, {}, [&](auto id) { return model_.object(id).address; });
   Block block;
   const auto close = [&] {
     if (block.objects.size() > 1) blocks_.push_back(block);
@@ -96,7 +92,7 @@ void ReadBlocks::pack(const std::vector<model::ObjectId>& neighbours) {
   close();
 }
 
-std::size_t drive::ReadBlocks::block_of(const bus::Exchange& exchange) const {
+std::size_t ReadBlocks::block_of(const bus::Exchange& exchange) const {
   if (exchange.access != bus::Access::read) return kNone;
   for (std::size_t i = 0; i < blocks_.size(); ++i)
     for (const model::ObjectId id : blocks_[i].objects) {
@@ -106,7 +102,7 @@ std::size_t drive::ReadBlocks::block_of(const bus::Exchange& exchange) const {
   return kNone;
 }
 
-void drive::ReadBlocks::add(bus::Exchange& exchange, model::ObjectId id) const {
+void ReadBlocks::add(bus::Exchange& exchange, model::ObjectId id) const {
   const model::ObjectDef& object = model_.object(id);
   if (exchange.size == 0) {
     exchange.object = object.address;
@@ -116,14 +112,13 @@ void drive::ReadBlocks::add(bus::Exchange& exchange, model::ObjectId id) const {
   }
 }
 
-bool drive::ReadBlocks::refused(const bus::Exchange& exchange) {
+bool ReadBlocks::refused(const bus::Exchange& exchange) {
   if (exchange.more.empty() || one_answer(exchange)) return false;
   const std::size_t at = block_of(exchange);
   if (at == kNone) return true;  // it fell in two while this was on the wire
   const ObjectAddress middle = exchange.more[exchange.more.size() / 2].object;
   auto& objects = blocks_[at].objects;
-  const auto cut = std::find_if(objects.begin(), objects.end(),
-                                [&](model::ObjectId id) { return model_.object(id).address >= middle; });
+  const auto cut = std::ranges::find_if(objects, [&](auto id) { return model_.object(id).address >= middle; });
   Block upper{{cut, objects.end()}, 0, false};
   objects.erase(cut, objects.end());
   blocks_[at].silences = 0;
@@ -131,14 +126,14 @@ bool drive::ReadBlocks::refused(const bus::Exchange& exchange) {
   return true;
 }
 
-bool drive::ReadBlocks::silent(const bus::Exchange& exchange) {
+bool ReadBlocks::silent(const bus::Exchange& exchange) {
   if (exchange.more.empty()) return false;
   const std::size_t at = block_of(exchange);
   if (at == kNone || ++blocks_[at].silences < kSilences) return false;
   return refused(exchange);
 }
 
-void drive::ReadBlocks::answered(const bus::Exchange& exchange) {
+void ReadBlocks::answered(const bus::Exchange& exchange) {
   if (exchange.more.empty()) return;
   const std::size_t at = block_of(exchange);
   if (at != kNone) blocks_[at].silences = 0;

@@ -22,7 +22,7 @@ std::uint8_t registers_of(const bus::Exchange& exchange) {
   return static_cast<std::uint8_t>(last.object.index - exchange.object.index + registers_of(last.size));
 }
 
-drive::Resync::Likeness drive::Resync::of(const bus::Exchange& exchange) const {
+Resync::Likeness Resync::of(const bus::Exchange& exchange) const {
   if (!facts_.by_length) return {named_by_reply(exchange.object), 0};
   // The reply to a write has a function code of its own: no read's reply is like it.
   return {{}, exchange.access == bus::Access::write ? std::uint8_t{0} : registers_of(exchange)};
@@ -34,7 +34,7 @@ Resync::Likeness Resync::of(const model::ResyncRead& read) const {
   return {{}, read.registers != 0 ? read.registers : registers_of(object.size)};
 }
 
-void drive::Resync::lost(const bus::Exchange& exchange, Instant now) {
+void Resync::lost(const bus::Exchange& exchange, Instant now) {
   suspect_ = true;
   last_lost_ = now;
   const Likeness like = of(exchange);
@@ -47,7 +47,7 @@ void drive::Resync::lost(const bus::Exchange& exchange, Instant now) {
     lost_.push_back({like});
 }
 
-void drive::Resync::refused(const bus::Exchange& exchange, Instant now) {
+void Resync::refused(const bus::Exchange& exchange, Instant now) {
   lost(exchange, now);
   const Likeness like = of(exchange);
   if (!is_refused(like) && refused_.size() < kMaxLost) refused_.push_back(like);
@@ -76,10 +76,8 @@ std::optional<model::ResyncRead> Resync::candidate() const {
 
 void Resync::resync_sent(const model::ResyncRead& read) {
   ++resyncs_;
-  const auto same = [&](const model::ResyncRead& r) {
-    return r.object == read.object && r.registers == read.registers;
-  };
-  const auto at = std::find_if(facts_.candidates.begin(), facts_.candidates.end(), same) - facts_.candidates.begin();
+  const auto same = [&](const auto& r) { return r.object == read.object && r.registers == read.registers; };
+  const auto at = std::ranges::find_if(facts_.candidates, same) - facts_.candidates.begin();
   if (sent_.size() < sent_.capacity()) sent_.push_back(static_cast<std::size_t>(at));
 }
 

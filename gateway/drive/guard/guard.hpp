@@ -61,7 +61,8 @@ class Guard {
     Instant jog_limit = kNever;     ///< when the jog must be halted before its position limit
   };
 
-  Guard(Lease& lease, const LeaseRules& rules) : ownership_(lease, rules) {}
+  /// `jog`: the button that is held, if one is.
+  Guard(Lease& lease, const LeaseRules& rules, Jog& jog) : ownership_(lease, rules), jog_(jog) {}
 
   // --- Who answers --------------------------------------------------------------------------------------------------
 
@@ -125,7 +126,7 @@ class Guard {
   [[nodiscard]] std::optional<OwnStop> strongest(const Seen& seen);
 
   Ownership ownership_;
-  Jog jog_;
+  Jog& jog_;
   OwedStop owed_;
   LateEnable late_enable_;
   struct {

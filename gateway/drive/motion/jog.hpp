@@ -8,8 +8,7 @@
 #include <optional>
 
 #include "gateway/core/rational.hpp"
-#include "gateway/image/axis_record.hpp"
-#include "gateway/image/command.hpp"
+#include "gateway/drive/motion/asked.hpp"
 
 namespace axisgate::drive {
 
@@ -17,6 +16,7 @@ class Jog {
  public:
   /// `pressed`: the point in its axis's record, which names this jog.
   void start(Command direction, ClientId client, Instant now, Duration timeout, AxisRecord::Point pressed) {
+    if (!active()) speed_.reset();
     direction_ = direction;
     client_ = client;
     until_ = now + timeout;
@@ -31,6 +31,11 @@ class Jog {
     return mine;
   }
   void end() { direction_ = Command::none; }
+  /// Its turn has come: it runs at this target velocity, which is its own and no client's.
+  void runs_at(const Wanted& speed) { speed_ = speed; }
+  /// A client runs the axis: at what clients have asked for, and at the speed of the button no more.
+  void give_way() { speed_.reset(); }
+  [[nodiscard]] std::optional<Wanted> speed() const { return active() ? speed_ : std::nullopt; }
   /// The drive is out of sight, or its answer was lost: the axis may run all the same, so its button counts on.
   void carry() { carried_ = true; }
   [[nodiscard]] bool carried() const { return active() && carried_; }
@@ -51,6 +56,7 @@ class Jog {
   Duration timeout_{};
   bool carried_ = false;
   AxisRecord::Point pressed_ = 0;
+  std::optional<Wanted> speed_{};
 };
 
 /// What a jog near a position limit is judged by. All in register units.

@@ -5,9 +5,9 @@
 // planners ask it, the axis tells it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "gateway/drive/motion/sightings.hpp"
 #include "gateway/image/axis_image.hpp"
@@ -16,13 +16,22 @@ namespace axisgate::drive {
 
 enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing };
 
-/// A target as a client asked for it.
-struct Wanted {
-  std::int64_t value = 0;               ///< in register units
-  std::optional<std::int64_t> exact{};  ///< as the drive counts, where the object mailbox gave it so
-  /// False: a velocity or torque that came in the request of a stop, or from who owns the axis no more. A command
-  /// starts by it, and an enable; no raw word or mode on an axis that is enabled does.
-  bool fresh = true;
+/// The stop latch: a quick stop or a lease's action sets it; an enable leaves it, or two raw words, 6 or 7 and then 15.
+class StopLatch {
+ public:
+  void set() { latched_ = true; }
+  void leave() { latched_ = armed_ = false; }
+  /// A 6 or 7 that went before was no step out of it.
+  void disarm() { armed_ = false; }
+  [[nodiscard]] bool latched() const { return latched_; }
+  /// While latched, `controlword` passes only stops and the two steps.
+  [[nodiscard]] bool passes(model::Request402 request) const;
+  /// Such a word was carried out; true: it was the second step.
+  bool passed(model::Request402 request);
+
+ private:
+  bool latched_ = false;
+  bool armed_ = false;  ///< the first step was taken
 };
 
 class Motion {
@@ -43,38 +52,35 @@ class Motion {
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
   void enabled() {
     raw_run_ = false;
-    unlatch();
+    latch_.leave();
   }
   /// The same of an axis that was enabled all the time: nothing was sent, and a raw run goes on.
-  void unlatch() {
-    latched_ = false;
-    unlatch_armed_ = false;
+  void unlatch() { latch_.leave(); }
+  [[nodiscard]] bool latched() const { return latch_.latched(); }
+  /// The quick stop that latched it goes to the drive now, or the drive has restarted or is out of sight.
+  void disarm() { latch_.disarm(); }
+  [[nodiscard]] bool passes(model::Request402 request) const { return latch_.passes(request); }
+  void passed(model::Request402 request) {
+    if (latch_.passed(request)) enabled();
   }
-  [[nodiscard]] bool latched() const { return latched_; }
-  /// The quick stop that latched it goes to the drive now, or the drive has restarted or is out of sight: a 6 or 7 that
-  /// went before it was no step out of the latch.
-  void disarm() { unlatch_armed_ = false; }
-
-  enum class Pass : std::uint8_t { refused, passes, passes_and_unlatches };
-  /// While latched, `controlword` passes only stops and the two steps: 6 or 7, and then 15.
-  [[nodiscard]] Pass pass(model::Request402 request) const;
-  void passed(model::Request402 request);
 
   // --- What runs -----------------------------------------------------------------------------------------------------
 
   /// Commands 6 to 11 need an axis that is enabled, not faulted and not stop-latched.
-  [[nodiscard]] bool may_start(const AxisFacts& facts) const { return facts.enabled() && facts.commanded && !latched_; }
+  [[nodiscard]] bool may_start(const AxisFacts& facts) const {
+    return facts.enabled() && facts.commanded && !latched();
+  }
   /// Standstill, as a relative move and set_position need it, and as axis_state shows it of an enabled axis.
   [[nodiscard]] bool at_rest(const AxisFacts& facts) const;
   /// It has been seen at rest from then on; kNever: not by the newest samples.
-  [[nodiscard]] Instant rests_since() const { return rests_ ? rests_since_ : kNever; }
+  [[nodiscard]] Instant rests_since() const { return rests_since_; }
   /// The motion started last was completed, and nothing has ended anything since.
-  [[nodiscard]] bool arrived() const { return arrived_; }
+  [[nodiscard]] bool arrived() const { return run_.arrived; }
   /// A motion command was accepted: target_reached reads 0 from now until unmask().
   void mask_target_reached() { target_reached_masked_ = true; }
   void unmask_target_reached() { target_reached_masked_ = false; }
   [[nodiscard]] bool target_reached_masked() const {
-    return target_reached_masked_ || (awaits_fall_ && kind_ == MotionKind::discrete) || ended_by_.has_value();
+    return target_reached_masked_ || (run_.awaits_fall && run_.kind == MotionKind::discrete) || end_wants_position();
   }
 
   /// The drive has acknowledged a start in this exchange; a motion under way is aborted by it.
@@ -92,80 +98,80 @@ class Motion {
   void owner_changed();
   /// The mode was changed: what ran in the mode before is over.
   void mode_changed();
-  /// The drive counts otherwise from now on: what was asked for in its numbers is what the registers show of it.
-  void scale_changed() {
-    for (auto& wanted : wanted_)
-      if (wanted) wanted->exact.reset();
-  }
   /// New samples. Ends the motion where they show its end.
   void observe(const AxisFacts& facts, Duration homing_timeout);
   /// Homing has run longer than its timeout: the axis must be halted (once).
-  [[nodiscard]] bool take_homing_timeout();
+  [[nodiscard]] bool take_homing_timeout() { return std::exchange(homing_timed_out_, false); }
   /// A value that came by itself shows its end, and may be of before its start (ANS-2): only a read now settles it.
   [[nodiscard]] bool end_wants_sample(const AxisFacts& facts) const;
   /// The drive has reported that it is at its target, and the position shown is of before: it is read next, and only
   /// then is the motion completed. Who acts on the end of a move looks where the axis is.
-  [[nodiscard]] bool end_wants_position() const { return ended_by_.has_value(); }
+  [[nodiscard]] bool end_wants_position() const { return run_.end.has_value(); }
   /// Whether it stands after a stop only a velocity sampled now can tell.
   [[nodiscard]] bool rest_wants_sample(const AxisFacts& facts) const;
   /// When observe() must be called even without samples.
   [[nodiscard]] Instant deadline() const;
 
-  [[nodiscard]] MotionKind running() const { return kind_; }
-  [[nodiscard]] MotionState state() const { return state_; }
-  [[nodiscard]] std::uint16_t id() const { return id_; }
+  [[nodiscard]] MotionKind running() const { return run_.kind; }
+  [[nodiscard]] MotionState state() const { return run_.state; }
+  [[nodiscard]] std::uint16_t id() const { return run_.id; }
   [[nodiscard]] AxisState axis_state(const AxisFacts& facts) const;
 
   // --- Set-points are not starts -------------------------------------------------------------------------------------
 
-  /// A client has written a target: it is kept, whether or not it may reach the drive now.
-  void want(Quantity target, Wanted wanted);
-  /// What clients asked for last. Velocity and torque: none after anything that ended a motion for good.
-  [[nodiscard]] std::optional<Wanted> wanted(Quantity target) const;
   /// Whether a write of this quantity may go to the drive now. `held_back`: by this drive the write itself would move
   /// the axis (profile `trigger`, or a maker's bit in the controlword in effect).
   [[nodiscard]] bool target_acts_now(Quantity target, const AxisFacts& facts, bool held_back) const;
 
  private:
+  /// What was started last: it runs, or has ended.
+  struct Run {
+    /// A statusword has shown its end, while an older position is shown.
+    struct End {
+      std::uint64_t exchange = 0;  ///< of that statusword
+      Instant until = kNever;      ///< so long a newer position is waited for
+    };
+    MotionKind kind = MotionKind::none;  ///< none: it has ended
+    MotionState state = MotionState::none;
+    std::uint16_t id = 0;
+    Instant since = kLongAgo;
+    std::uint64_t by = 0;  ///< exchange: only statuswords sampled after it tell of this motion
+    /// Bit 10 may still tell of the move before, until it was seen to fall or the axis stands all the same.
+    bool awaits_fall = false;
+    bool arrived = false;  ///< it was completed, and nothing has ended anything since
+    std::optional<End> end{};
+    Instant homing_until = kNever;
+  };
+  /// Nothing runs any more: it has ended so, or completed where its end was shown before.
+  void over(MotionState how);
   void end(MotionState how);
-  void mark_targets(bool fresh);
   void complete(Instant now);
   /// The statusword shows the end of the motion: completes it once the position shown is no older.
   void complete_with_position(const AxisFacts& facts);
   /// A velocity sampled late enough to show the newest start, stop or end shows that the axis stands.
   [[nodiscard]] bool stands(const AxisFacts& facts) const;
+  void look_for_end(const AxisFacts& facts, Duration homing_timeout);
   void observe_homing(const AxisFacts& facts, Duration timeout);
   [[nodiscard]] bool move_under_way(const AxisFacts& facts) const;
+  /// A start of ours runs by a target velocity or torque.
+  [[nodiscard]] bool follows_target() const {
+    return run_.kind == MotionKind::velocity || run_.kind == MotionKind::torque;
+  }
 
   Duration velocity_lag_;
   AxisRecord& record_;
-  bool latched_ = false;
-  bool unlatch_armed_ = false;
+  StopLatch latch_{};
+  Run run_{};
   bool raw_run_ = false;
   bool stopping_ = false;
-  bool rests_ = false;  ///< by the newest samples, with no set-point that it follows
-  Instant rests_since_ = kLongAgo;
-  bool arrived_ = false;  ///< the motion started last was completed, and nothing has ended anything since
   bool target_reached_masked_ = false;
   bool homing_timed_out_ = false;
-  MotionKind kind_ = MotionKind::none;
-  MotionState state_ = MotionState::none;
-  std::uint16_t id_ = 0;
-  Instant started_ = kLongAgo;
-  Instant settled_from_ =
-      kLongAgo;  ///< the sampled velocity tells the truth of the newest start, stop or end from then on
-  std::uint64_t started_by_ = 0;  ///< exchange: only statuswords sampled after it tell of this motion
-  std::optional<std::uint64_t>
-      ended_by_;                     ///< exchange whose statusword showed the end, while an older position is shown
-  Instant position_until_ = kNever;  ///< and how long the end waits for a newer one
-  Instant homing_until_ = kNever;
-  bool acknowledges_ = true;  ///< the drive says that it took a set-point, as far as seen last
-  /// It does not: bit 10 may still tell of the move before, until it was seen to fall or the axis stands all the same.
-  bool awaits_fall_ = false;
+  bool acknowledges_ = true;      ///< the drive says that it took a set-point, as far as seen last
+  Instant rests_since_ = kNever;  ///< by the newest samples, with no set-point that it follows; kNever: not
+  /// The sampled velocity tells the truth of the newest start, stop or end from then on.
+  Instant settled_from_ = kLongAgo;
   Instant seen_ = kLongAgo;  ///< the newest instant of observe()
   Sightings sightings_{};
-  /// What clients last asked for: position, velocity, torque.
-  std::array<std::optional<Wanted>, 3> wanted_;
 };
 
 }  // namespace axisgate::drive

@@ -24,8 +24,8 @@ void add_requirements(const AxisCore& core, Command command, Plan& plan) {
 // homing_method must have been written or configured since bring-up and be in the profile's list.
 std::optional<std::int64_t> homing_method(const AxisCore& core) {
   const auto& list = core.model.homing_methods;
-  const bool listed = core.homing_method && std::find(list.begin(), list.end(), *core.homing_method) != list.end();
-  return listed ? core.homing_method : std::nullopt;
+  const auto method = core.homing_method();
+  return method && std::ranges::find(list, *method) != list.end() ? method : std::nullopt;
 }
 
 // The drive runs on and on towards a switch that no input listens to.
@@ -88,7 +88,7 @@ Errc admissible(const AxisCore& core, Command command) {
     }
     case Command::home:
       if (!homing_method(core)) return Errc::bad_value;
-      return switch_is_there(core, *core.homing_method) ? Errc::ok : Errc::state_unsuitable;
+      return switch_is_there(core, *homing_method(core)) ? Errc::ok : Errc::state_unsuitable;
     case Command::set_position: {
       const auto& def = core.model.command(command);
       if (def && def->zero_only && core.set_position_value != 0) return Errc::bad_value;
@@ -184,7 +184,7 @@ Plan plan_move(const AxisCore& core, Command command) {
     command = Command::move_absolute;
   }
   const model::Binding* target = core.model.binding(Quantity::target_position);
-  const auto raw = wanted->exact ? wanted->exact : target->to_raw(wanted->value, core.object(target->object));
+  const auto raw = raw_of(core, *target, *wanted);
   if (!raw) return Plan::refuse(Errc::bad_value);
   Plan plan;
   // A drive that follows its target would take even a distance for one.
@@ -239,8 +239,8 @@ Plan plan_home(const AxisCore& core) {
   add_speeds(core, 6, plan);
   if (!add_write(core, Quantity::homing_method, {*method}, plan)) return Plan::refuse(Errc::bad_value);
   // A set_position that failed half-way may have left 0 there.
-  if (core.offset_owed) {
-    if (!add_write(core, Quantity::homing_offset, {*core.offset_owed}, plan)) return Plan::refuse(Errc::bad_value);
+  if (const auto offset = core.asked.owed(Quantity::homing_offset)) {
+    if (!add_write(core, Quantity::homing_offset, {*offset}, plan)) return Plan::refuse(Errc::bad_value);
     plan.add(Action::at(Mark::return_homing));
   }
   plan.add(Action::at(Mark::not_homed));

@@ -20,16 +20,17 @@ Plan plan_raw_move(const AxisCore& core, std::uint16_t word) {
   if (const Errc code = judge_move(core, relative); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
   add_speeds(core, 1, plan);
-  const auto target = core.motion.wanted(Quantity::target_position);
+  const auto target = core.asked.taken(Quantity::target_position);
   if (target && !add_write(core, Quantity::target_position, *target, plan)) return Plan::refuse(Errc::bad_value);
   return plan;
 }
 
 Plan plan_raw_homing(const AxisCore& core) {
-  if (!core.homing_method) return Plan::refuse(Errc::bad_value);
+  const auto method = core.homing_method();
+  if (!method) return Plan::refuse(Errc::bad_value);
   Plan plan;
   add_speeds(core, 6, plan);
-  if (!add_write(core, Quantity::homing_method, {*core.homing_method}, plan)) return Plan::refuse(Errc::bad_value);
+  if (!add_write(core, Quantity::homing_method, {*method}, plan)) return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(Mark::not_homed));
   return plan;
 }
@@ -48,7 +49,7 @@ bool word_starts(const AxisCore& core, std::uint16_t word, bool enabled) {
 
 Plan plan_controlword(const AxisCore& core, std::uint16_t word, bool command_follows) {
   const model::Request402 request = model::request_of(word);
-  if (core.motion.pass(request) == Motion::Pass::refused) return Plan::refuse(Errc::state_unsuitable);
+  if (!core.motion.passes(request)) return Plan::refuse(Errc::state_unsuitable);
   if (core.is_virtual()) return plan_virtual_controlword(core, word);
   Plan plan;
   const AxisFacts facts = core.facts();

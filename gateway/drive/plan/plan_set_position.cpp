@@ -54,8 +54,9 @@ Plan plan_set_position(const AxisCore& core, int mode_before) {
     std::int64_t during;
     std::optional<std::int64_t> before;
   };
-  const auto offset = core.offset_owed ? core.offset_owed : core.value(Quantity::homing_offset);
-  const auto method = core.homing_method ? core.homing_method : core.value(Quantity::homing_method);
+  const auto owed = core.asked.owed(Quantity::homing_offset), asked = core.homing_method();
+  const auto offset = owed ? owed : core.value(Quantity::homing_offset);
+  const auto method = asked ? asked : core.value(Quantity::homing_method);
   const std::array<Borrowed, 2> borrowed{
       {{Quantity::homing_offset, 0, offset}, {Quantity::homing_method, kMethodPresentPosition, method}}};
   // The mode that moves was left before; no step may bring it back, nor leave a start in the controlword for it.

@@ -36,22 +36,6 @@ bool upper_limit_first(const AxisCore& core, const WriteBatch& batch) {
   return false;
 }
 
-// A target that comes with its own start goes with it, once the mode is the right one: a change of mode would
-// invalidate it.
-bool sent_with_start(Command command, Quantity quantity) {
-  switch (command) {
-    case Command::move_absolute:
-    case Command::move_relative:
-      return quantity == Quantity::target_position;
-    case Command::run_velocity:
-      return quantity == Quantity::target_velocity;
-    case Command::run_torque:
-      return quantity == Quantity::target_torque;
-    default:
-      return false;
-  }
-}
-
 // What the write batch says, else what the drive holds.
 std::optional<std::int64_t> limit_after(const AxisCore& core, const WriteBatch& batch, Quantity quantity) {
   for (const Setpoint& sp : batch.setpoints)
@@ -79,11 +63,15 @@ Range position_range(const AxisCore& core, const WriteBatch& batch) {
   return {std::max(of_axis.min, *low), std::min(of_axis.max, *high)};
 }
 
+std::optional<std::int64_t> raw_of(const AxisCore& core, const model::Binding& by, const Wanted& wanted) {
+  return wanted.exact ? wanted.exact : by.to_raw(wanted.value, core.object(by.object));
+}
+
 bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan) {
   const model::Binding* binding = core.model.binding(quantity);
   if (binding == nullptr || binding->object == model::kNoObject || !binding->writable) return false;
   const model::ObjectDef& object = core.object(binding->object);
-  const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, object);
+  const auto raw = raw_of(core, *binding, wanted);
   if (!raw) return false;
   const ObjectState& state = core.store[binding->object];
   if (state.cached && state.number == *raw && !object.trigger && !object.composed) return true;
@@ -166,9 +154,8 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
     const model::Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
     Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
-    if (!wanted.fresh && core.facts().enabled()) wanted = {};
-    const auto raw = wanted.exact ? wanted.exact : binding->to_raw(wanted.value, core.object(binding->object));
-    add_running_target(core, binding->object, raw.value_or(0), plan, look_again);
+    if (core.motion.record().set_aside_since(wanted.at) && core.facts().enabled()) wanted = {};
+    add_running_target(core, binding->object, raw_of(core, *binding, wanted).value_or(0), plan, look_again);
   }
   if (look_again) plan.add(Action::at(Mark::look_again));
 }
@@ -203,42 +190,17 @@ void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& p
 
 // 3.4: a target_velocity acts at once while commands 8 and 9 or raw modes run, and not on a jog.
 bool waits_for_jog(const AxisCore& core, const WriteBatch& batch, Quantity quantity) {
-  return core.velocity_beside_jog && quantity == Quantity::target_velocity && batch.command != Command::run_velocity;
-}
-
-namespace {
-
-// Registers 47 to 52: the rest of what a start goes by is what the drive holds (design 3.2), or the start's own.
-bool is_speed(Quantity quantity) {
-  using enum Quantity;
-  return quantity == max_torque || quantity == profile_velocity || quantity == profile_acceleration ||
-         quantity == profile_deceleration;
-}
-
-void note_told(AxisCore& core, const Setpoint& sp) {
-  const model::Binding* binding = core.model.binding(sp.quantity);
-  if (!is_speed(sp.quantity) || binding == nullptr || binding->object == model::kNoObject) return;
-  const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
-  if (raw) core.accepted_speeds.insert_or_assign(binding->object, AxisCore::AcceptedSpeed{sp.quantity, sp.value, *raw});
-}
-
-}  // namespace
-
-void forget_accepted_speeds(AxisCore& core, const WriteBatch& batch) {
-  for (const Setpoint& sp : batch.setpoints)
-    if (const model::Binding* binding = core.model.binding(sp.quantity)) core.accepted_speeds.erase(binding->object);
+  return core.jog.active() && quantity == Quantity::target_velocity && batch.command != Command::run_velocity;
 }
 
 void remember_setpoints(AxisCore& core, const WriteBatch& batch) {
   for (const Setpoint& sp : batch.setpoints) {
-    const bool beside_jog = core.velocity_beside_jog && sp.quantity == Quantity::target_velocity && !batch.jogs;
-    if (beside_jog) core.velocity_beside_jog = Wanted{sp.value, sp.exact};
-    if (!waits_for_jog(core, batch, sp.quantity))
-      core.motion.want(sp.quantity, {sp.value, sp.exact, !holds_stop(batch)});
-    note_told(core, sp);
-    if (sp.quantity == Quantity::homing_method) core.homing_method = sp.value;
-    if (sp.quantity == Quantity::homing_offset) core.offset_owed.reset();
+    if (batch.jogs && sp.quantity == Quantity::target_velocity)
+      core.jog.runs_at({sp.value, sp.exact, batch.client, core.motion.record().now()});
+    else
+      core.asked.take(sp.quantity, {sp.value, sp.exact, batch.client}, holds_stop(batch));
   }
+  if (batch.command == Command::run_velocity && !batch.jogs) core.jog.give_way();
   if (batch.set_position_value) core.set_position_value = *batch.set_position_value;
 }
 
@@ -270,7 +232,7 @@ bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& f
     return core.motion.target_acts_now(sp.quantity, facts, held_back);
   const bool runs = facts.enabled() && facts.commanded && setpoint_of_mode(facts.mode) == sp.quantity;
   if (!runs || !core.motion.target_acts_now(sp.quantity, facts, true)) return false;
-  const auto raw = sp.exact ? sp.exact : binding->to_raw(sp.value, core.object(binding->object));
+  const auto raw = raw_of(core, *binding, {sp.value, sp.exact});
   const ObjectState& state = core.store[binding->object];
   const auto& repeated = core.model.keep_alive;
   const bool kept_alive = std::any_of(repeated.begin(), repeated.end(), [&](const auto& row) {
@@ -287,7 +249,9 @@ Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch) {
   Plan plan;
   const AxisFacts facts = core.facts();
   const auto add = [&](const Setpoint& sp) {
-    if (sent_with_start(batch.command, sp.quantity) || waits_for_jog(core, batch, sp.quantity)) return true;
+    // A target that comes with its own start goes with it, once the mode is the right one: a change of mode would
+    // invalidate it.
+    if (target_of(batch.command) == sp.quantity || waits_for_jog(core, batch, sp.quantity)) return true;
     if (!may_be_written(core, sp, facts)) return true;
     const std::size_t before = plan.actions.size();
     if (!add_write(core, sp.quantity, {sp.value, sp.exact}, plan)) return false;

@@ -25,6 +25,19 @@ std::vector<Quantity> speeds_of(int motion_mode) {
   }
 }
 
+// As it was asked for last; where two of them are one object, the later one. None: the drive cannot hold it.
+std::optional<Wanted> asked_speed(const AxisCore& core, model::ObjectId object) {
+  std::optional<Wanted> newest;
+  for (const model::Binding& each : core.model.bindings) {
+    if (each.object != object || !is_speed(each.quantity)) continue;
+    auto wanted = core.asked.taken(each.quantity);
+    if (!wanted || (newest && newest->at > wanted->at)) continue;
+    wanted->exact = raw_of(core, each, *wanted);
+    newest = wanted;
+  }
+  return newest && newest->exact ? newest : std::nullopt;
+}
+
 }  // namespace
 
 bool is_speed_of_motion(Quantity quantity) {
@@ -35,6 +48,40 @@ bool is_speed_of_motion(Quantity quantity) {
   });
 }
 
+void forget_speeds(AxisCore& core, const WriteBatch& batch) {
+  for (const Setpoint& sp : batch.setpoints) {
+    const model::Binding* binding = core.model.binding(sp.quantity);
+    for (const model::Binding& each : core.model.bindings)
+      if (binding != nullptr && each.object == binding->object && is_speed(each.quantity))
+        core.asked.forget(each.quantity);
+  }
+}
+
+void rescale(AxisCore& core) {
+  core.motion.record().rescaled();
+  for (const model::Binding& each : core.model.bindings)
+    if (is_speed(each.quantity) && !asked_speed(core, each.object)) core.asked.forget(each.quantity);
+}
+
+bool has_lost_speeds(const AxisCore& core) {
+  return std::ranges::any_of(core.model.bindings, [&](const model::Binding& each) {
+    const auto told = is_speed(each.quantity) ? asked_speed(core, each.object) : std::nullopt;
+    if (!told || core.object(each.object).nvm != model::Nvm::no) return false;
+    const ObjectState& state = core.store[each.object];
+    return state.known && !state.unverified && !state.unsure && !state.clamped && state.number != told->exact;
+  });
+}
+
+bool holds_asked_speeds(const AxisCore& core, int mode) {
+  return std::ranges::all_of(speeds_of(mode), [&](Quantity each) {
+    const model::Binding* binding = core.model.binding(each);
+    const auto told = binding != nullptr && core.model.takes(each) ? asked_speed(core, binding->object) : std::nullopt;
+    if (!told) return true;
+    const ObjectState& state = core.store[binding->object];
+    return !state.known || state.clamped || state.number == told->exact;
+  });
+}
+
 // A drive that was silent may have restarted while nobody heard it: what a limit is held against is read again then.
 void add_speeds(const AxisCore& core, int mode, Plan& plan) {
   bool look_again = false;
@@ -42,11 +89,11 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     const model::Binding* binding = core.model.binding(each);
     if (binding == nullptr || !core.model.takes(each)) continue;
     const ObjectState& state = core.store[binding->object];
-    const auto told = core.accepted_speeds.find(binding->object);
-    if (told != core.accepted_speeds.end() && !state.clamped) {
+    const auto told = asked_speed(core, binding->object);
+    if (told && !state.clamped) {
       // After a mode change it is taken to be as it was: what a start takes longer is a button's time.
-      if (!state.known || state.out_of_sight || state.number != told->second.raw)
-        static_cast<void>(add_write(core, each, {told->second.value, told->second.raw}, plan));
+      if (!state.known || state.out_of_sight || state.number != told->exact)
+        static_cast<void>(add_write(core, each, *told, plan));
       continue;
     }
     // Nobody knows what it holds, and it may be beyond the limit.

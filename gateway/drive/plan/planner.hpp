@@ -18,9 +18,7 @@ namespace axisgate::drive {
 [[nodiscard]] Range position_range(const AxisCore& core, const WriteBatch& batch = {});
 /// Parameters and set-points: those that may reach the drive now.
 [[nodiscard]] Plan plan_setpoints(const AxisCore& core, const WriteBatch& batch);
-/// What was asked for here has failed: no start goes by it.
-void forget_accepted_speeds(AxisCore& core, const WriteBatch& batch);
-/// Targets are remembered in the motion rules even where they may not reach the drive now.
+/// The turn of these set-points has come: starts go by them, even where they may not reach the drive now.
 void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 /// The mode a command needs: writes it and waits for the display.
 [[nodiscard]] Plan plan_mode(const AxisCore& core, std::int16_t mode);
@@ -100,13 +98,23 @@ void add_mode(const AxisCore& core, int mode, Plan& plan);
 /// last, where the drive holds others, having restarted perhaps; and the configured limit for what it holds beyond
 /// that, from its maker or another tool.
 void add_speeds(const AxisCore& core, int mode, Plan& plan);
+/// Nothing of it is known to be another one in the drive.
+[[nodiscard]] bool holds_asked_speeds(const AxisCore& core, int mode);
 /// In some mode add_speeds() looks at it.
 [[nodiscard]] bool is_speed_of_motion(Quantity quantity);
+/// The speeds and ramps asked for here have failed: no start goes by them.
+void forget_speeds(AxisCore& core, const WriteBatch& batch);
+/// The drive's constants were read: what it cannot hold any more is forgotten, and limits are for what it holds.
+void rescale(AxisCore& core);
+/// The drive shows another speed or ramp than was asked for, of those that it forgets with its power.
+[[nodiscard]] bool has_lost_speeds(const AxisCore& core);
+/// As the drive counts; none: it cannot.
+[[nodiscard]] std::optional<std::int64_t> raw_of(const AxisCore& core, const model::Binding& by, const Wanted& wanted);
 /// Writes the quantity's value unless the drive is known to hold it. False where it cannot be had in the drive's
 /// numbers.
 [[nodiscard]] bool add_write(const AxisCore& core, Quantity quantity, const Wanted& wanted, Plan& plan);
 /// Makes the velocity and torque set-points in the drive 0, or, with `keep_wanted`, what was asked for since the last
-/// stop; of an axis that is enabled only what is fresh (Wanted::fresh).
+/// stop; of an axis that is enabled only what was not set aside since (AxisRecord).
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan);
 /// Makes the position set-point the actual position.
 void add_target_here(const AxisCore& core, Plan& plan);

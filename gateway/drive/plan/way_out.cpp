@@ -48,6 +48,28 @@ bool moves_as_target(const AxisCore& core, model::ObjectId object, std::int64_t 
   return acts && (target == Quantity::target_position || number != 0);
 }
 
+bool within_limits(const AxisCore& core, Quantity target, std::int64_t number) {
+  const model::Binding& binding = *core.model.binding(target);
+  const model::ObjectDef& object = core.object(binding.object);
+  const Range range = target == Quantity::target_position ? position_range(core) : binding.limits;
+  const auto least = binding.to_raw(range.min, object), most = binding.to_raw(range.max, object);
+  if (!least || !most) return true;
+  return number >= std::min(*least, *most) && number <= std::max(*least, *most);
+}
+
+// A word that starts a move: to the target that the drive holds, at the speeds that it holds.
+bool starts_within_limits(const AxisCore& core, model::ObjectId object, std::int64_t number) {
+  constexpr std::int64_t kNewSetPoint = 0x10, kRelative = 0x40, kHalt = 0x100;
+  constexpr int kProfilePosition = 1;
+  const bool word = object == core.model.controlword && !core.is_virtual();
+  if (!word || (number & (kNewSetPoint | kHalt)) != kNewSetPoint || core.mode_in_force() != kProfilePosition)
+    return true;
+  const model::ObjectId target = core.object_of(Quantity::target_position);
+  const bool goes_there = (number & kRelative) == 0 && target != model::kNoObject && core.store[target].cached;
+  if (goes_there && !within_limits(core, Quantity::target_position, core.store[target].number)) return false;
+  return holds_asked_speeds(core, kProfilePosition);
+}
+
 }  // namespace
 
 Reach reach_of(const AxisCore& core, model::ObjectId object, std::int64_t number) {
@@ -76,10 +98,12 @@ Errc held_on_way_out(const AxisCore& core, model::ObjectId object, std::int64_t 
   if (sender.stops) return reach == Reach::moves || keeps_enabled ? Errc::ok : Errc::state_unsuitable;
   if (core.motion.record().stopped_since(*sender.asked)) return Errc::dropped_by_stop;
   if (core.turn.now > sender.by) return Errc::never_started;
+  const auto target = target_of(core, object);
+  if (target && !within_limits(core, *target, number)) return Errc::bad_value;
+  if (!starts_within_limits(core, object, number)) return Errc::bad_value;
   if (sender.begins) return Errc::ok;
   if (reach == Reach::enables) return keeps_enabled ? Errc::ok : Errc::state_unsuitable;
   // A new speed acts on the run that is on: by itself, or by the run's start once more (CommandDef::repeat_on_change).
-  const auto target = target_of(core, object);
   return core.motion.target_acts_now(target.value_or(Quantity::target_velocity), facts, false) ? Errc::ok
                                                                                                : Errc::state_unsuitable;
 }

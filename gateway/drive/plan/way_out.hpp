@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The way out of one axis: every write that is about to leave is judged once more by what it could do to the motor, by
 // its profile and by what the drive shows, not by who has planned it. Pure. Promises that nothing which enables or
-// moves leaves after a newer stop, too late, without having been asked for, or as a stop of an axis that has no torque.
-// Never changes a write: it passes or does not.
+// moves leaves after a newer stop, too late, beyond a limit, at another speed than was accepted, without having been
+// asked for, or as a stop of an axis that has no torque. Never changes a write: it passes or does not.
 #pragma once
 
 #include <optional>
@@ -26,8 +26,8 @@ struct Sender {
   Instant by = kNever;
 };
 
-/// Errc::ok: it passes. dropped_by_stop: a stop is newer. never_started: it is too late. state_unsuitable: nobody has
-/// asked for what it would do.
+/// Errc::ok: it passes. dropped_by_stop: a stop is newer. never_started: it is too late. bad_value: beyond a limit, or
+/// at another speed. state_unsuitable: nobody has asked for what it would do.
 [[nodiscard]] Errc held_on_way_out(const AxisCore& core, model::ObjectId object, std::int64_t number,
                                    const Sender& sender);
 

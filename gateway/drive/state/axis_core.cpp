@@ -182,6 +182,9 @@ void AxisCore::make(model::ObjectId id, std::int64_t number) {
 
 void AxisCore::started(MotionKind kind, bool relative, std::optional<std::int64_t> ends_at) {
   sent_to.reset();
+  // A button starts nothing that a client has asked for.
+  const bool runs = kind == MotionKind::velocity || kind == MotionKind::torque;
+  if (runs && !jog.speed()) motion.record().run();
   if (ends_at) sent_to = {*ends_at, store.invalidations()};
   if (!is_virtual()) return;
   std::optional<std::int64_t> goal;
@@ -223,7 +226,7 @@ bool AxisCore::held_back(Quantity quantity) const {
 }
 
 std::optional<Wanted> AxisCore::target_position() const {
-  if (const auto wanted = motion.wanted(Quantity::target_position)) return wanted;
+  if (const auto wanted = asked.taken(Quantity::target_position)) return wanted;
   if (const auto cached = value(Quantity::target_position)) return Wanted{*cached};
   return std::nullopt;
 }
@@ -240,7 +243,16 @@ std::optional<std::int64_t> AxisCore::setpoint_position() const {
   return sampled ? value(Quantity::position_actual) : std::nullopt;
 }
 
-Wanted AxisCore::running_target(Quantity quantity) const { return motion.wanted(quantity).value_or(Wanted{}); }
+Wanted AxisCore::running_target(Quantity quantity) const {
+  const auto speed = quantity == Quantity::target_velocity ? jog.speed() : std::nullopt;
+  if (speed) return motion.record().void_since(speed->at) ? Wanted{} : *speed;
+  return asked.taken(quantity).value_or(Wanted{});
+}
+
+std::optional<std::int64_t> AxisCore::homing_method() const {
+  if (const auto wanted = asked.taken(Quantity::homing_method)) return wanted->value;
+  return model.homing_method;
+}
 
 // --- Faults --------------------------------------------------------------------------------------------------------
 
@@ -249,7 +261,7 @@ bool tells_state(const model::AxisModel& model, model::ObjectId id) {
 }
 
 bool AxisCore::names_cause(model::ObjectId id) const {
-  return store[id].known && fault.counts(tells_state(id), store[id].exchange);
+  return store[id].known && fault.counts(tells_state(model, id), store[id].exchange);
 }
 
 void AxisCore::watch_fault() {
@@ -261,7 +273,7 @@ void AxisCore::watch_fault() {
                         .words = {}};
   for (const model::ObjectId id : causes) {
     const ObjectState& word = store[id];
-    seen.words.push_back({id, word.refused, tells_state(id), word.exchange});
+    seen.words.push_back({id, word.refused, tells_state(model, id), word.exchange});
   }
   fault.observe(seen);
   fault.name(named_code(*this));

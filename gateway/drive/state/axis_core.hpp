@@ -4,6 +4,7 @@
 // Never sends and never waits.
 #pragma once
 
+#include "gateway/drive/motion/jog.hpp"
 #include "gateway/drive/motion/motion.hpp"
 #include "gateway/drive/motion/virtual_axis.hpp"
 #include "gateway/drive/state/fault_watch.hpp"
@@ -28,19 +29,17 @@ struct AxisCore {
   ObjectStore& store;
   const Turn& turn;  ///< its drive's
   Motion motion;
-  std::uint32_t alarms = 0;                     ///< AxisAlarm bits found by checks and by what was seen
-  std::uint16_t loss_stop_ms = kLossNotKnown;   ///< row 98
-  FaultWatch fault{};                           ///< what names a fault, and what must be read for it
-  CauseObjects causes = cause_objects(model);   ///< what names the cause of one
-  std::optional<std::int64_t> homing_method{};  ///< written or configured since bring-up
-  std::optional<std::int64_t> offset_owed{};    ///< homing offset that set_position could not put back yet
-  /// While a jog runs: the velocity that a client asked for last. It waits for a start of its own.
-  std::optional<Wanted> velocity_beside_jog{};
-  bool mode_chosen = false;             ///< a client has chosen the mode since bring-up
-  bool homed = false;                   ///< latched (design 3.1, discrete input 6)
-  bool counter_wrapped = false;         ///< its position has jumped, and no homing was begun since
-  std::int32_t set_position_value = 0;  ///< row 78, the gateway's own
-  VirtualAxis machine{};                ///< of a virtual axis alone
+  Asked asked{motion.record()};                ///< what clients asked of it
+  Jog jog{};                                   ///< the button that is held, if one is
+  std::uint32_t alarms = 0;                    ///< AxisAlarm bits found by checks and by what was seen
+  std::uint16_t loss_stop_ms = kLossNotKnown;  ///< row 98
+  FaultWatch fault{};                          ///< what names a fault, and what must be read for it
+  CauseObjects causes = cause_objects(model);  ///< what names the cause of one
+  bool mode_chosen = false;                    ///< a client has chosen the mode since bring-up
+  bool homed = false;                          ///< latched (design 3.1, discrete input 6)
+  bool counter_wrapped = false;                ///< its position has jumped, and no homing was begun since
+  std::int32_t set_position_value = 0;         ///< row 78, the gateway's own
+  VirtualAxis machine{};                       ///< of a virtual axis alone
   /// Where the motion started last was sent, in register units, and the store's invalidations() then: the drive may
   /// hold another target since.
   struct SentTo {
@@ -48,14 +47,6 @@ struct AxisCore {
     std::uint64_t invalidations = 0;
   };
   std::optional<SentTo> sent_to{};
-  /// A speed or ramp as a client has asked for it last. Every start goes by it (design 3.3, set-points), also where the
-  /// drive has restarted since and holds its own.
-  struct AcceptedSpeed {
-    Quantity quantity{};
-    std::int64_t value = 0;  ///< in register units
-    std::int64_t raw = 0;    ///< in the drive's numbers
-  };
-  std::map<model::ObjectId, AcceptedSpeed> accepted_speeds{};
   NvmBudget nvm{};
 
   /// link_state online or suspect.
@@ -78,8 +69,6 @@ struct AxisCore {
   void watch_fault();
   /// A sample of this object names the cause of the fault that there is now, not of one before.
   [[nodiscard]] bool names_cause(model::ObjectId id) const;
-  /// The statusword is made from it, or is it.
-  [[nodiscard]] bool tells_state(model::ObjectId id) const { return drive::tells_state(model, id); }
   /// The newest number of the quantity in register units; none where there is no good one.
   [[nodiscard]] std::optional<std::int64_t> value(Quantity quantity) const;
   /// The object that a quantity is read from or written to, where the drive has it; else kNoObject.
@@ -106,8 +95,11 @@ struct AxisCore {
   [[nodiscard]] bool shows_torque() const;
   /// The bus cannot take this virtual axis's torque away, and it is not enabled.
   [[nodiscard]] bool cannot_deenergise() const;
-  /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0.
+  /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0. The velocity
+  /// of a jog is the jog's.
   [[nodiscard]] Wanted running_target(Quantity quantity) const;
+  /// What a client has asked for since bring-up, else the configured one.
+  [[nodiscard]] std::optional<std::int64_t> homing_method() const;
 
  private:
   [[nodiscard]] bool follows(const AxisFacts& facts) const;

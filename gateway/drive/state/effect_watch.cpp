@@ -35,7 +35,7 @@ void EffectWatch::sending(const AxisCore& core) {
   const auto speed = core.value(Quantity::velocity_actual);
   if (id != model::kNoObject && speed && core.store[id].cached &&
       core.turn.now - core.store[id].sent_at <= core.model.velocity_lag)
-    fastest_ = std::max(fastest_, std::abs(*speed));
+    fall_.before(*speed);
 }
 
 model::ObjectId EffectWatch::to_read(const AxisCore& core, Effect effect) {
@@ -55,20 +55,21 @@ bool EffectWatch::shown(const AxisCore& core, Effect effect, std::uint64_t after
   return effect == Effect::stop ? stops(core, after) : homes(core, after);
 }
 
-// A sampled velocity of 0 may be of before a start that the stop has ended; one that falls is of now. Without torque a
-// motor coasts as it may: the state alone shows the stop.
+// A sampled velocity of 0 may be of before a start that the stop has ended, and so may noise about it; one that falls
+// is of now. Without torque a motor coasts as it may: the state alone shows the stop. A bit that says that it stands is
+// not believed while it turns.
 bool EffectWatch::stops(const AxisCore& core, std::uint64_t after) {
   if (fresh(core, core.model.statusword, after) && !core.shows_torque()) return true;
-  const auto speed = core.value(Quantity::velocity_actual);
-  if (speed && fresh(core, core.object_of(Quantity::velocity_actual), after)) {
-    fastest_ = std::max(fastest_, std::abs(*speed));
-    const std::int64_t slower = std::max(fastest_ / kPartSlower, core.model.standstill_velocity);
-    if (fastest_ - std::abs(*speed) >= slower) return true;
-  }
+  const auto velocity = core.value(Quantity::velocity_actual);
+  const model::ObjectId sampled = core.object_of(Quantity::velocity_actual);
+  const std::int64_t standstill = core.model.standstill_velocity;
+  const bool tells = velocity && fresh(core, sampled, after);
+  if (tells && fall_.falls(*velocity, core.store[sampled].sent_at, standstill)) return true;
   const model::ObjectId moves = core.motion_object();
-  const bool sampled = moves == core.object_of(Quantity::velocity_actual);
-  return fresh(core, moves, after) && !core.facts().moving &&
-         (!sampled || core.turn.now - sent_at_ >= core.model.velocity_lag);
+  if (!fresh(core, moves, after)) return false;
+  if (moves == sampled)
+    return (!core.facts().moving || fall_.turned_round()) && core.turn.now - sent_at_ >= core.model.velocity_lag;
+  return !core.facts().moving && (sampled == model::kNoObject || (tells && std::abs(*velocity) <= standstill));
 }
 
 // It moves, its bits have changed, or it is elsewhere. What moved before nobody can tell from what homes; and a drive
@@ -82,7 +83,7 @@ bool EffectWatch::homes(const AxisCore& core, std::uint64_t after) const {
     return true;
   if (core.is_virtual() || !fresh(core, object_of(core, core.model.homed), after)) return false;
   if (facts.reference != before_.homed || (facts.homing_failed && !before_.homing_failed)) return true;
-  return facts.reference && !must_move(core.homing_method.value_or(0));
+  return facts.reference && !must_move(core.homing_method().value_or(0));
 }
 
 bool stop_shows(const AxisCore& core) {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/drive/state/axis_core.hpp"
+#include "gateway/drive/watch/slowing.hpp"
 
 namespace axisgate::drive {
 
@@ -29,7 +29,7 @@ class EffectWatch {
   [[nodiscard]] bool homes(const AxisCore& core, std::uint64_t after) const;
 
   Instant sent_at_ = kLongAgo;
-  std::int64_t fastest_ = 0;  ///< without sign, from the first sending on
+  FirstFall fall_;  ///< from the first sending on
   struct Before {
     bool moving = false;
     bool homed = false;

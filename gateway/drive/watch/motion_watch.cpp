@@ -45,21 +45,17 @@ void MotionWatch::begin_end(Instant at, bool by_stop) {
   rest_.reset();
   beyond_.reset();
   derived_from_.reset();
-  slows_ = by_stop;
-  at_stop_.reset();
-  slower_at_ = at + kStopGoesOut;
+  slowing_.reset();
+  if (by_stop) slowing_.emplace(at + std::max(kStopGoesOut, rules_.lag));
 }
 
 // A stop that takes effect late, or a ramp that begins slowly, is one as soon as it makes the motor slower.
 void MotionWatch::take_speed(double speed, Instant at, Duration window) {
-  if (!slows_ || phase_ == Phase::explained || at < ended_) return;
-  if (!at_stop_) at_stop_ = slowest_ = speed;
-  if (speed <= slowest_ - std::max(*at_stop_ / kPartSlower, 1.0)) {
-    slowest_ = speed;
-    slower_at_ = std::max(slower_at_, at);
+  if (!slowing_ || phase_ == Phase::explained || at < ended_) return;
+  if (slowing_->take(speed, at)) {
     phase_ = Phase::ends;
     beyond_.reset();
-  } else if (phase_ == Phase::ends && at - slower_at_ >= window) {
+  } else if (phase_ == Phase::ends && slowing_->ended(at, window)) {
     end_explanation(at);
   }
 }
@@ -69,12 +65,11 @@ std::optional<MotionWatch::Unexpected> MotionWatch::take_velocity(const TimedVal
   take_speed(speed, velocity.at, window);
   if (rules_.by_position) return std::nullopt;
   if (phase_ == Phase::ends && speed <= rules_.standstill && velocity.at >= ended_ + rules_.lag) {
-    slows_ = false;
+    slowing_.reset();
     end_explanation(velocity.at);
   }
   if (phase_ == Phase::settles && velocity.at >= settled_) phase_ = Phase::watches;
-  constexpr double kTimesStandstill = 10;
-  if (phase_ != Phase::watches || !is_second(speed > kTimesStandstill * rules_.standstill, velocity.at))
+  if (phase_ != Phase::watches || !is_second(speed > model::kTimesStandstill * rules_.standstill, velocity.at))
     return std::nullopt;
   return Unexpected{.from = {}, .now = velocity.value};
 }
@@ -102,7 +97,7 @@ void MotionWatch::look_for_rest(const TimedValue& position) {
   if (!rest_ || std::abs(position.value - rest_->value) > rules_.travel / kPartStanding) {
     rest_ = position;
   } else if (position.at - rest_->at >= rules_.settle) {
-    slows_ = false;
+    slowing_.reset();
     end_explanation(position.at);
   }
 }

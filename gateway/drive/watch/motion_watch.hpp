@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "gateway/drive/watch/slowing.hpp"
 #include "gateway/drive/watch/timed_value.hpp"
 
 namespace axisgate::drive {
@@ -39,8 +40,6 @@ class MotionWatch {
 
   /// A stop may take so long to reach its drive.
   static constexpr Duration kStopGoesOut = std::chrono::seconds(1);
-  /// One part in so many of the speed at the stop is slower.
-  static constexpr double kPartSlower = 50;
   /// What stays within this part of `travel` for `settle` stands.
   static constexpr double kPartStanding = 20;
 
@@ -86,10 +85,7 @@ class MotionWatch {
   Instant position_at_ = kLongAgo;
   Instant velocity_at_ = kLongAgo;
   std::optional<TimedValue> derived_from_;
-  bool slows_ = false;  ///< the explanation is a stop, and it was not seen to stand since
-  std::optional<double> at_stop_;
-  double slowest_ = 0;
-  Instant slower_at_ = kLongAgo;
+  std::optional<Slowing> slowing_;  ///< the explanation is a stop, and it was not seen to stand since
 };
 
 }  // namespace axisgate::drive

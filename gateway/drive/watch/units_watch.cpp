@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gateway/model/watch_rules.hpp"
+
 namespace axisgate::drive {
 
 std::optional<UnitsWatch::Disagreement> UnitsWatch::observe(const Seen& seen) {
@@ -35,14 +37,14 @@ void UnitsWatch::take_velocity(const TimedValue& velocity) {
 }
 
 std::optional<UnitsWatch::Disagreement> UnitsWatch::judge(const Window& window) {
-  constexpr double kSecondsPerMinute = 60, kTimesStandstill = 10;
+  constexpr double kSecondsPerMinute = 60;
   constexpr int kFewest = 3;
   if (window.velocities < kFewest) return std::nullopt;
   const double minutes = std::chrono::duration<double>(window.to->at - window.from.at).count() / kSecondsPerMinute;
   const Disagreement found{.velocity = window.sum / window.velocities,
                            .position = (window.to->value - window.from.value) / minutes};
   const double faster = std::max(std::abs(found.velocity), std::abs(found.position));
-  if (faster <= kTimesStandstill * rules_.standstill) return std::nullopt;
+  if (faster <= model::kTimesStandstill * rules_.standstill) return std::nullopt;
   off_ = std::abs(found.velocity - found.position) > kOff * faster ? off_ + 1 : 0;
   if (off_ < kWindows) return std::nullopt;
   reported_ = true;

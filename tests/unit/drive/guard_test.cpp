@@ -22,7 +22,7 @@ class World {
  public:
   explicit World(LeaseAction on_expiry = LeaseAction::quick_stop) {
     rules_.on_expiry = on_expiry;
-    guard_.emplace(lease_, rules_);
+    guard_.emplace(lease_, rules_, jog_);
     guard_->ownership().set_armed(true);
   }
 
@@ -96,6 +96,7 @@ class World {
   }
   Lease lease_;
   LeaseRules rules_;
+  Jog jog_;
   std::optional<Guard> guard_;
   std::shared_ptr<ClientLife> me_ = test::client(7, "192.168.1.7:4711");
   Instant now_ = kStart;

@@ -73,26 +73,23 @@ TEST(MotionRules, EverythingThatEndsAMotionForGoodEndsItForGood) {
   for (const MotionKind kind : {MotionKind::discrete, MotionKind::velocity, MotionKind::torque, MotionKind::homing}) {
     for (const auto& [end, how] : ends) {
       Stage s;
-      s.motion.want(Quantity::target_velocity, {1'000});
-      s.motion.want(Quantity::target_torque, {300});
-      s.motion.want(Quantity::target_position, {2'000});
       s.start(kind);
       s.see();
+      const auto asked = s.record.now();
       end(s);
       EXPECT_EQ(s.motion.running(), MotionKind::none);
       EXPECT_EQ(s.motion.state(), how);
-      EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity) || s.motion.wanted(Quantity::target_torque));
-      EXPECT_TRUE(s.motion.wanted(Quantity::target_position)) << "a place is no start";
+      EXPECT_TRUE(s.record.void_since(asked)) << "velocity and torque are needed again";
     }
   }
 }
 
 TEST(MotionRules, AReplacedMotionIsNotEndedForGood) {
   Stage s;
-  s.motion.want(Quantity::target_velocity, {1'000});
+  const auto asked = s.record.now();
   s.start(MotionKind::velocity);
   s.start(MotionKind::discrete);
-  EXPECT_TRUE(s.motion.wanted(Quantity::target_velocity));
+  EXPECT_FALSE(s.record.void_since(asked));
 }
 
 TEST(MotionRules, AChangeOfTheModeEndsWhatRanInTheModeBefore) {
@@ -111,14 +108,14 @@ TEST(MotionRules, TargetsWrittenWhileDisabledAreKeptForTheStart) {
   Stage s;
   s.facts.state = model::State402::switch_on_disabled;
   s.see();
-  s.motion.want(Quantity::target_velocity, {1'000});
+  const auto asked = s.record.now();
   for (int i = 0; i < 5; ++i) s.see();
   s.facts.state = model::State402::operation_enabled;
   s.see();
-  ASSERT_TRUE(s.motion.wanted(Quantity::target_velocity));
+  ASSERT_FALSE(s.record.void_since(asked));
   s.facts.state = model::State402::switch_on_disabled;
   s.see();
-  EXPECT_FALSE(s.motion.wanted(Quantity::target_velocity)) << "a disable came after";
+  EXPECT_TRUE(s.record.void_since(asked)) << "a disable came after";
 }
 
 TEST(MotionRules, WhatMayReachTheDriveNow) {
@@ -201,16 +198,16 @@ TEST(MotionRules, TheLatchIsLeftByTheTwoStepsInTheirOrder) {
   s.motion.stop(true, s.facts.at);
   EXPECT_FALSE(s.motion.may_start(s.facts));
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping);
-  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::refused);
-  EXPECT_EQ(s.motion.pass(model::Request402::other), Motion::Pass::refused);
+  EXPECT_FALSE(s.motion.passes(model::Request402::enable_operation));
+  EXPECT_FALSE(s.motion.passes(model::Request402::other));
   s.motion.passed(model::Request402::enable_operation);
   EXPECT_TRUE(s.motion.latched());
   s.motion.passed(model::Request402::quick_stop);
-  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::refused);
+  EXPECT_FALSE(s.motion.passes(model::Request402::enable_operation));
   s.motion.passed(model::Request402::shutdown);
-  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::passes_and_unlatches);
+  EXPECT_TRUE(s.motion.passes(model::Request402::enable_operation));
   s.motion.stop(true, s.facts.at);
-  EXPECT_EQ(s.motion.pass(model::Request402::enable_operation), Motion::Pass::refused) << "another stop came between";
+  EXPECT_FALSE(s.motion.passes(model::Request402::enable_operation)) << "another stop came between";
   s.motion.passed(model::Request402::switch_on);
   s.motion.passed(model::Request402::enable_operation);
   EXPECT_FALSE(s.motion.latched());

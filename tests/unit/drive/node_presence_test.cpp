@@ -116,7 +116,7 @@ TEST(NodePresence, ADuplicateNodeIdIsShownForAMinuteAfterItsLastSign) {
   EXPECT_FALSE(presence.duplicated(kBegin));
   presence.on_duplicate(kBegin);
   presence.on_duplicate(kBegin + 30s);
-  EXPECT_EQ(presence.duplicate_until(), kBegin + 90s);
+  EXPECT_EQ(presence.duplicate_due(kBegin + 30s), kBegin + 90s);
   EXPECT_TRUE(presence.duplicated(kBegin + 89s));
   EXPECT_FALSE(presence.duplicated(kBegin + 90s));
 }

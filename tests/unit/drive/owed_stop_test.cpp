@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stop that an axis owes, alone: what was accepted, sent and read goes in, and what is to be sent comes out.
 #include "gateway/drive/motion/owed_stop.hpp"
-#include "gateway/drive/motion/stop_watch.hpp"
 #include "gateway/drive/state/object_store.hpp"
 
 #include <gtest/gtest.h>
@@ -249,40 +248,6 @@ TEST(OwedStop, ThatWasShownIsOwedAnewWhereTheMotorTurnsOn) {
   EXPECT_EQ(owed.state_read(model::State402::quick_stop_active, 5, false), OwedStop::End::none) << "of before";
   EXPECT_EQ(owed.state_read(model::State402::quick_stop_active, 6, true), OwedStop::End::none);
   EXPECT_EQ(owed.due(Instant{}), StopKind::quick_stop);
-}
-
-constexpr Duration kLook = std::chrono::milliseconds(100), kLag = std::chrono::milliseconds(300);
-
-/// Whether it is told to go on within these looks.
-bool goes_on(StopWatch& watch, std::initializer_list<std::int64_t> speeds) {
-  Instant at{};
-  bool told = false;
-  for (const std::int64_t speed : speeds) told = watch.goes_on(speed, at += kLook, kLag) || told;
-  return told;
-}
-
-TEST(StopWatch, ToldOnceOfAMotorThatGetsNoSlower) {
-  StopWatch watch;
-  EXPECT_FALSE(goes_on(watch, {100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100}))
-      << "no stop is watched";
-  watch.begin({StopKind::halt, 7});
-  EXPECT_TRUE(goes_on(watch, {100, 80, 80, 81, 80, 79, 79, 79, 80, 80, 81, 79, 79}));
-  EXPECT_FALSE(watch.watched());
-  EXPECT_FALSE(goes_on(watch, {79, 79, 79, 79, 79, 79, 79, 79, 79, 79, 79, 79, 79}));
-}
-
-TEST(StopWatch, ARampOfFifteenSecondsIsNone) {
-  StopWatch watch;
-  watch.begin({StopKind::quick_stop, 1});
-  Instant at{};
-  for (int part = 150; part > 0; --part) EXPECT_FALSE(watch.goes_on(part * 1000, at += kLook, kLag)) << part;
-  EXPECT_TRUE(watch.watched());
-}
-
-TEST(StopWatch, OneThatGetsFasterGoesOn) {
-  StopWatch watch;
-  watch.begin({StopKind::quick_stop, 1});
-  EXPECT_TRUE(goes_on(watch, {100, 110, 120, 130, 140, 150, 160, 170, 180, 190, 200, 210, 220}));
 }
 
 // --- What was read before a sending shows nothing of it

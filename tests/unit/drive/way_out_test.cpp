@@ -87,6 +87,42 @@ TEST_F(WayOut, WhatComesTooLateGivesNoTorqueAndAStopIsNeverTooLate) {
       Errc::ok);
 }
 
+TEST_F(WayOut, NoMoveStartsToATargetBeyondItsLimitsOrAtAnotherSpeedThanWasAskedFor) {
+  const auto start = [this](std::int64_t word) {
+    return held_on_way_out(core, core.model.controlword, word, {.asked = record.now(), .begins = true});
+  };
+  shows(kEnabled, 1);
+  auto& target = const_cast<model::Binding&>(*core.model.binding(Quantity::target_position));
+  target.limits = {-1000, 1000};
+  store.read(target.object, *target.to_raw(1000, core.object(target.object)), turn.now);
+  EXPECT_EQ(start(0x3F), Errc::ok);
+  store.read(target.object, *target.to_raw(1001, core.object(target.object)), turn.now);
+  EXPECT_EQ(start(0x3F), Errc::bad_value);
+  EXPECT_EQ(start(0x7F), Errc::ok) << "a distance";
+  EXPECT_EQ(start(0x2F), Errc::ok) << "no start";
+  EXPECT_EQ(start(0x13F), Errc::ok) << "it halts";
+  store.read(target.object, 0, turn.now);
+  const model::Binding& speed = *core.model.binding(Quantity::profile_velocity);
+  core.asked.take(Quantity::profile_velocity, {.value = 50'000});
+  store.read(speed.object, *speed.to_raw(50'000, core.object(speed.object)), turn.now);
+  EXPECT_EQ(start(0x3F), Errc::ok);
+  store.read(speed.object, *speed.to_raw(60'000, core.object(speed.object)), turn.now);
+  EXPECT_EQ(start(0x3F), Errc::bad_value);
+}
+
+TEST_F(WayOut, NoTargetBeyondItsLimitsReachesARun) {
+  shows(kEnabled, 3);
+  auto& target = const_cast<model::Binding&>(*core.model.binding(Quantity::target_velocity));
+  target.limits = {-1000, 1000};
+  const auto write = [&](std::int64_t value) {
+    return held_on_way_out(core, target.object, *target.to_raw(value, core.object(target.object)),
+                           {.asked = record.now(), .begins = true});
+  };
+  EXPECT_EQ(write(1000), Errc::ok);
+  EXPECT_EQ(write(-1000), Errc::ok);
+  EXPECT_EQ(write(1100), Errc::bad_value);
+}
+
 TEST_F(WayOut, AnEnablePassesForWhoeverHasAskedForItAfterTheNewestStop) {
   shows(kDisabled, 1, 6);
   record.stop(record.accepted());
