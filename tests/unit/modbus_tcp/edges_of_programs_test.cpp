@@ -39,6 +39,7 @@ TEST(EdgesOfPrograms, what_a_connection_repeats_is_not_new_whatever_others_of_it
   EXPECT_EQ(write(Command::quick_stop, 4, {.command = 3, .id = 4}), Verdict::acts)
       << "a stop too many is the smaller harm";
   EXPECT_EQ(write(Command::halt, 900, {.command = 4, .id = 4}), Verdict::acts) << "an id that differs from its own";
+  EXPECT_EQ(write(Command::halt, 900, {.command = 4}), Verdict::acts) << "and where it has written none";
 }
 
 TEST(EdgesOfPrograms, what_another_program_has_overtaken_is_not_new_once_its_action_was_ended) {

@@ -129,9 +129,10 @@ Verdict EdgeMemory::command_with_id(Command value, std::uint16_t id, CommandIds&
   const bool differs = !kept || id != *ids.last;
   Verdict verdict = Verdict::nothing;
   if (is_stop(value)) {
-    // A stop too many is the smaller harm: one that a connection repeats acts where another has written since.
+    // A stop too many is the smaller harm: one that a connection repeats acts where another has written since, and the
+    // first one that it writes with an id whatever the id of its address is.
     const bool other_command = !command_.written || command_.value != number;
-    const bool other_id = differs || (writing.own.id && writing.own.id != id);
+    const bool other_id = differs || writing.own.id != id;
     if (other_id || other_command || writing.form == WriteForm::single) verdict = Verdict::acts;
   } else if (value != Command::none && differs && id != writing.own.id) {
     // The first id of an address is only remembered: nobody knows whether it is one from before a restart.
