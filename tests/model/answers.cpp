@@ -9,8 +9,8 @@
 namespace axisgate::test::reference {
 namespace {
 
-// 3.3 Outcomes: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception. 0x02: an object whose
-// answers a bad line has taken three times is given up for a while, and what needs it is not there.
+// 3.3 Outcomes: not started, nothing was sent, outcome unknown; 3.1, 43/13: an extended exception. 0x02: an object
+// whose answers a bad line has taken three times is given up for a while, and what needs it is not there.
 const std::set<int> kTrouble{2, 3, 4, 6, 10, 11, 0xFF};
 
 }  // namespace

@@ -103,6 +103,13 @@ TEST_P(Unheeded, WhatWasToldDoneIsTakenBackWhereTheMotorTurnsOn) {
   EXPECT_TRUE(plant_.logged("the motor turns on after its quick_stop"));
 }
 
+TEST_P(Unheeded, AHaltBehindAQuickStopThatStopsNothingIsNotDoneEither) {
+  runs();
+  ignore_quick_stop(plant_.stage, GetParam(), true);
+  EXPECT_EQ(a_.command(kQuickStop), kFailed);
+  EXPECT_EQ(a_.command(kHalt), kFailed);
+}
+
 // Noise about its speed is no fall.
 TEST_P(Unheeded, AQuickStopIsNotDoneByNoiseOfTheVelocity) {
   runs();

@@ -91,6 +91,7 @@ Plan halt(const AxisCore& core) {
       if (asked_for && !core.state_is_of_now()) return look_at_state(core);
       plan.add(Action::read(core.model.statusword));
       plan.add(Action::wait(not_enabled(core), kStopLimit));
+      add_motor_obeys(core, plan);  // in a quick stop that stops nothing it turns on
       return plan;
     }
   }
