@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <optional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 namespace axisgate::modbus_tcp {
@@ -168,8 +170,10 @@ TEST(Edges, of_command_ids) {
   for (const Story& story : stories) {
     EdgeMemory memory;
     CommandIds ids;
-    play(story.sentence, story.steps, [&](const std::string& value, const Writing& writing) {
+    std::optional<std::uint16_t> own;
+    play(story.sentence, story.steps, [&](const std::string& value, Writing writing) {
       const auto id = static_cast<std::uint16_t>(std::stoi(value.substr(value.find('/') + 1)));
+      writing.own.id = std::exchange(own, id);
       return word(memory.command_with_id(Command{static_cast<std::uint8_t>(std::stoi(value))}, id, ids, writing));
     });
   }
