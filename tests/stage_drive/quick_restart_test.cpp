@@ -32,6 +32,27 @@ class QuickRestart : public testing::TestWithParam<KincoType> {
     options.axis.homing_method = 35;
     return options;
   }
+  /// However restart and start meet. `limit`: of its velocity; `before`: what happens before the restart.
+  static void starts_slowly_right_after(std::optional<std::int64_t> limit, void (*before)(Rig&)) {
+    for (const auto boot_time : {60ms, 200ms, 500ms}) {
+      for (const auto pause : {0ms, 20ms, 50ms, 100ms, 200ms, 400ms}) {
+        SCOPED_TRACE(testing::Message() << boot_time.count() << ' ' << pause.count());
+        RigOptions options = quick(boot_time);
+        options.axis.velocity_limit = limit;
+        Rig rig(GetParam(), options);
+        rig.bring_to(enabled);
+        ASSERT_NO_FATAL_FAILURE(before(rig));
+        restart(rig);
+        rig.stage.run(boot_time + pause);
+        static_cast<void>(rig.command(Command::enable));
+        static_cast<void>(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 500'000}})));
+        std::int64_t fastest = 0;
+        for (int i = 0; i < 100; ++i, rig.stage.run(10ms))
+          fastest = std::max(fastest, rig.axis()[Quantity::velocity_actual].value);
+        EXPECT_LE(fastest, kSlowly + kSlowly / 20);
+      }
+    }
+  }
 };
 
 TEST_P(QuickRestart, IsSeenByTheReferenceThatIsLost) {
@@ -91,47 +112,19 @@ TEST_P(QuickRestart, AndASlowOneLeavesTheSpeedThatWasAskedFor) {
 
 // 3.3: a number is "known to hold" only "with no timeout since": a start that comes at once finds others in the drive.
 TEST_P(QuickRestart, RightBeforeAStartLeavesTheSpeedThatWasAskedFor) {
-  for (const auto boot_time : {60ms, 200ms, 500ms}) {
-    for (const auto pause : {0ms, 20ms, 50ms, 100ms, 200ms, 400ms}) {
-      SCOPED_TRACE(testing::Message() << boot_time.count() << ' ' << pause.count());
-      Rig rig(GetParam(), quick(boot_time));
-      rig.bring_to(enabled);
-      ASSERT_EQ(rig.write(Quantity::profile_velocity, kSlowly).outcome.code, Errc::ok);
-      rig.stage.run(2s);
-      restart(rig);
-      rig.stage.run(boot_time + pause);
-      static_cast<void>(rig.command(Command::enable));
-      static_cast<void>(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 500'000}})));
-      std::int64_t fastest = 0;
-      for (int i = 0; i < 100; ++i, rig.stage.run(10ms))
-        fastest = std::max(fastest, rig.axis()[Quantity::velocity_actual].value);
-      EXPECT_LE(fastest, kSlowly + kSlowly / 20);
-    }
-  }
+  starts_slowly_right_after({}, [](Rig& rig) {
+    ASSERT_EQ(rig.write(Quantity::profile_velocity, kSlowly).outcome.code, Errc::ok);
+    rig.stage.run(2s);
+  });
 }
 
 // A speed that only a limit has written is the drive's own again: nobody has asked for it, and it is beyond the limit.
 TEST_P(QuickRestart, RightBeforeAStartLeavesTheSpeedWithinItsLimit) {
-  for (const auto boot_time : {60ms, 200ms, 500ms}) {
-    for (const auto pause : {0ms, 20ms, 50ms, 100ms, 200ms, 400ms}) {
-      SCOPED_TRACE(testing::Message() << boot_time.count() << ' ' << pause.count());
-      RigOptions options = quick(boot_time);
-      options.axis.velocity_limit = kSlowly;
-      Rig rig(GetParam(), options);
-      rig.bring_to(enabled);
-      EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 50'000}})).outcome.code,
-                Errc::ok);
-      rig.stage.run(6s);
-      restart(rig);
-      rig.stage.run(boot_time + pause);
-      static_cast<void>(rig.command(Command::enable));
-      static_cast<void>(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 500'000}})));
-      std::int64_t fastest = 0;
-      for (int i = 0; i < 100; ++i, rig.stage.run(10ms))
-        fastest = std::max(fastest, rig.axis()[Quantity::velocity_actual].value);
-      EXPECT_LE(fastest, kSlowly + kSlowly / 20);
-    }
-  }
+  starts_slowly_right_after(kSlowly, [](Rig& rig) {
+    EXPECT_EQ(rig.ask(with_command(Command::move_relative, {{Quantity::target_position, 50'000}})).outcome.code,
+              Errc::ok);
+    rig.stage.run(6s);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, QuickRestart, testing::Values(KincoType::jd, KincoType::md),

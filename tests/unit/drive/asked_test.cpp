@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "gateway/drive/plan/planner.hpp"
-#include "gateway/profile/resolve/profile_resolve.hpp"
-#include "tests/places.hpp"
+#include "tests/unit/drive/kinco.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -146,16 +145,7 @@ TEST_F(WhatWasAsked, WhatTheGatewayHasChangedForAMomentIsOwed) {
 // With a drive beside it: what a start goes by.
 class AskedOfADrive : public testing::Test {
  protected:
-  AskedOfADrive() : model(resolved()), store(model.objects) {}
-  static model::DriveModel resolved() {
-    profile::ResolveInput input;
-    input.protocol = "canopen";
-    profile::ResolveAxis axis;
-    axis.number = 1;
-    input.axes = {axis};
-    return std::get<model::DriveModel>(
-        profile::resolve(profile::load_profile(test::source_path("schemas/drives/kinco-jd.json")), input));
-  }
+  AskedOfADrive() : model(kinco_jd()), store(model.objects) {}
   void ask(std::initializer_list<Setpoint> setpoints, Command command = Command::none) {
     remember_setpoints(core, batch_of(setpoints, command));
   }

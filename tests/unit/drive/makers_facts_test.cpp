@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gateway/drive/state/axis_core.hpp"
-#include "gateway/profile/resolve/profile_resolve.hpp"
-#include "tests/places.hpp"
+#include "tests/unit/drive/kinco.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -15,21 +14,12 @@ using std::chrono::milliseconds;
 /// A Kinco JD on CANopen, enabled in mode 1, with bit 12 of its controlword set.
 class MakersFacts : public testing::Test {
  protected:
-  MakersFacts() : model(kinco()), store(model.objects) {
+  MakersFacts() : model(kinco_jd()), store(model.objects) {
     store.begin_exchange();
     store.read(core.model.statusword, 0x0637, turn.now);
     store.read(core.model.controlword, 0x103F, turn.now);
     store.read(core.model.mode, 1, turn.now);
     store.read(core.model.mode_display, 1, turn.now);
-  }
-  static model::DriveModel kinco() {
-    profile::ResolveInput input;
-    input.protocol = "canopen";
-    profile::ResolveAxis axis;
-    axis.number = 1;
-    input.axes = {axis};
-    return std::get<model::DriveModel>(
-        profile::resolve(profile::load_profile(test::source_path("schemas/drives/kinco-jd.json")), input));
   }
 
   model::DriveModel model;
