@@ -34,7 +34,9 @@ LAYERS = [
     ("gateway/upstream/modbus_tcp", ("gateway/image", "gateway/core")),
     # The DDS topics in two processes: what they say to each other, the gateway's half, the half with the DDS library, and whoever
     # starts that one and carries packets between the two.
-    ("gateway/upstream/dds_link", ("gateway/core",)),
+    ("gateway/upstream/link", ("gateway/core",)),
+    ("gateway/upstream/dds_link", ("gateway/upstream/link", "gateway/core")),
+    ("gateway/upstream/web_link", ("gateway/upstream/link", "gateway/core")),
     ("gateway/upstream/dds_process", ("gateway/upstream/dds_link", "gateway/manual", "gateway/core")),
     ("gateway/upstream/dds_host", ("gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/image", "gateway/core")),
     ("gateway/upstream/dds", ("gateway/upstream/dds_link", "gateway/image", "gateway/core")),
@@ -63,7 +65,7 @@ ONE_PLACE = {
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/listing/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
             "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/scan/plan/",
-            "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/",
+            "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/link/", "gateway/upstream/web_link/",
             "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/",
             "adapters/keya/", "adapters/can/")
 SHELLS = ("gateway/upstream/modbus_tcp/server/", "adapters/modbus_rtu/link/", "adapters/can/link/")
@@ -143,7 +145,8 @@ def arrows(root):
 # The namespace of a room; the first folder that a file fits holds. What stands inside may be nested deeper.
 NAMESPACES = [
     ("gateway/core", "axisgate"), ("gateway/image", "axisgate"), ("adapters/asio", "axisgate"), ("gateway/main.cpp", None),
-    ("gateway/upstream/modbus_tcp", "axisgate::modbus_tcp"), ("gateway/upstream", "axisgate::dds"),
+    ("gateway/upstream/modbus_tcp", "axisgate::modbus_tcp"), ("gateway/upstream/web", "axisgate::web"),
+    ("gateway/upstream/link", "axisgate::link"), ("gateway/upstream/host", "axisgate::host"), ("gateway/upstream", "axisgate::dds"),
     ("tests/simulated", "axisgate::simulated"), ("tests/axisgate_sim", "axisgate::simulated"), ("tests/model", "axisgate::test::reference"),
     ("tests/bench", "axisgate::bench"), ("tests", None),
 ]

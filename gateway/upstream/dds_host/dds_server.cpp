@@ -102,7 +102,7 @@ void DdsServer::read_turn() {
 bool DdsServer::take(Bytes packet, Instant now) {
   const Decoded decoded = decode(packet);
   if (decoded.error == DecodeError::none) return take(decoded.record, now);
-  fail({ProcessEnd::How::not_a_record, 0, std::string(text(decoded.error))});
+  fail({ProcessEnd::How::not_a_record, 0, text(decoded.error, "axisgate-dds")});
   return false;
 }
 

@@ -14,7 +14,7 @@ enum class LivelinessKind : std::uint8_t {
   manual_by_participant,
   manual_by_topic,
 };
-inline constexpr LivelinessKind kLastLivelinessKind = LivelinessKind::manual_by_topic;
+[[nodiscard]] constexpr LivelinessKind last_of(LivelinessKind /*any*/) { return LivelinessKind::manual_by_topic; }
 
 /// Its assertions renew the leases of its axes, and their end is its end.
 [[nodiscard]] constexpr bool is_sign_of_life(LivelinessKind kind) { return kind == LivelinessKind::manual_by_topic; }

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_link/records.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <string_view>
 #include <type_traits>
-#include <utility>
 
 namespace axisgate::dds {
 namespace {
@@ -118,152 +114,13 @@ void members(Coder& coder, R& r) requires std::is_same_v<std::remove_const_t<R>,
   coder.text(r.where, kMaxName);
 }
 
-class Encoder {
- public:
-  explicit Encoder(std::vector<Byte>& to) : to_(to) {}
-
-  template <typename... T>
-  void operator()(const T&... values) {
-    (put(values), ...);
-  }
-  void text(const std::string& text, std::size_t most) {
-    const std::string_view cut = std::string_view(text).substr(0, most);
-    put(static_cast<std::uint16_t>(cut.size()));
-    to_.insert(to_.end(), cut.begin(), cut.end());
-  }
-  template <typename T, typename Each>
-  void list(const std::vector<T>& items, std::size_t most, Each&& each) {
-    const std::size_t count = std::min(items.size(), most);
-    put(static_cast<std::uint16_t>(count));
-    for (std::size_t i = 0; i < count; ++i) each(items[i]);
-  }
-
- private:
-  template <typename T>
-  requires std::is_integral_v<T>
-  void put(T value) {
-    auto bits = static_cast<std::uint64_t>(value);
-    for (std::size_t i = 0; i < sizeof(T); ++i, bits >>= 8) to_.push_back(static_cast<Byte>(bits & 0xFF));
-  }
-  void put(LivelinessKind value) { put(static_cast<std::uint8_t>(value)); }
-  void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
-  void put(const Guid& guid) { to_.insert(to_.end(), guid.begin(), guid.end()); }
-
-  std::vector<Byte>& to_;
-};
-
-class Decoder {
- public:
-  explicit Decoder(Bytes from) : from_(from) {}
-
-  template <typename... T>
-  void operator()(T&... values) {
-    (take(values), ...);
-  }
-  void text(std::string& text, std::size_t most) {
-    std::uint16_t size = 0;
-    take(size);
-    const Bytes bytes = next(size <= most ? size : from_.size() + 1);
-    text.assign(bytes.begin(), bytes.end());
-  }
-  template <typename T, typename Each>
-  void list(std::vector<T>& items, std::size_t most, Each&& each) {
-    std::uint16_t count = 0;
-    take(count);
-    // Each item is a byte at least: a count that cannot be true allocates nothing.
-    if (count > most || count > from_.size()) failed_ = true;
-    if (failed_) return;
-    items.resize(count);
-    for (T& item : items) each(item);
-  }
-  [[nodiscard]] bool complete() const { return !failed_ && from_.empty(); }
-
- private:
-  Bytes next(std::size_t size) {
-    failed_ = failed_ || size > from_.size();
-    if (failed_) return {};
-    const Bytes taken = from_.first(size);
-    from_ = from_.subspan(size);
-    return taken;
-  }
-  template <typename T>
-  requires std::is_integral_v<T>
-  void take(T& value) {
-    std::uint64_t bits = 0;
-    const Bytes bytes = next(sizeof(T));
-    for (std::size_t i = bytes.size(); i-- > 0;) bits = (bits << 8) | bytes[i];
-    value = static_cast<T>(bits);
-  }
-  void take(LivelinessKind& value) {
-    std::uint8_t kind = 0;
-    take(kind);
-    failed_ = failed_ || kind > static_cast<std::uint8_t>(kLastLivelinessKind);
-    value = static_cast<LivelinessKind>(kind);
-  }
-  void take(double& value) {
-    std::uint64_t bits = 0;
-    take(bits);
-    value = std::bit_cast<double>(bits);
-  }
-  void take(Guid& guid) {
-    const Bytes bytes = next(guid.size());
-    std::copy(bytes.begin(), bytes.end(), guid.begin());
-  }
-
-  Bytes from_;
-  bool failed_ = false;
-};
-
-constexpr std::size_t kHeader = 2;  // version, kind
-
-template <std::size_t... I>
-void make_kind(std::size_t kind, Record& record, std::index_sequence<I...>) {
-  ((I == kind ? static_cast<void>(record.emplace<I>()) : static_cast<void>(0)), ...);
-}
+/// Calls members() of the record.
+constexpr auto kMembers = [](auto& coder, auto& record) { members(coder, record); };
 
 }  // namespace
 
-std::vector<Byte> encode(const Record& record) {
-  std::vector<Byte> packet;
-  packet.reserve(256);
-  packet.push_back(kLinkVersion);
-  packet.push_back(static_cast<Byte>(record.index()));
-  Encoder encoder(packet);
-  std::visit([&](const auto& each) { members(encoder, each); }, record);
-  return packet;
-}
+std::vector<Byte> encode(const Record& record) { return link::encode(record, kLinkVersion, kMembers); }
 
-Decoded decode(Bytes packet) {
-  Decoded out;
-  if (packet.size() < kHeader) {
-    out.error = DecodeError::too_short;
-  } else if (packet[0] != kLinkVersion) {
-    out.error = DecodeError::version;
-  } else if (packet[1] >= std::variant_size_v<Record>) {
-    out.error = DecodeError::kind;
-  } else {
-    make_kind(packet[1], out.record, std::make_index_sequence<std::variant_size_v<Record>>{});
-    Decoder decoder(packet.subspan(kHeader));
-    std::visit([&](auto& each) { members(decoder, each); }, out.record);
-    if (!decoder.complete()) out.error = DecodeError::length;
-  }
-  return out;
-}
-
-std::string_view text(DecodeError error) {
-  switch (error) {
-    case DecodeError::none:
-      return "good";
-    case DecodeError::too_short:
-      return "a packet without kind";
-    case DecodeError::version:
-      return "another version: axisgate and axisgate-dds are not of one installation";
-    case DecodeError::kind:
-      return "a kind of record that this version does not know";
-    case DecodeError::length:
-      return "a record of another length than its kind has";
-  }
-  return {};
-}
+Decoded decode(Bytes packet) { return link::decode<Record>(packet, kLinkVersion, kMembers); }
 
 }  // namespace axisgate::dds

@@ -15,12 +15,14 @@
 #include "gateway/upstream/dds_link/gateway_name.hpp"
 #include "gateway/upstream/dds_link/guid.hpp"
 #include "gateway/upstream/dds_link/liveliness.hpp"
+#include "gateway/upstream/link/coder.hpp"
 
 namespace axisgate::dds {
 
 /// First byte of each packet. Both ends are installed together: another version is another installation.
 inline constexpr std::uint8_t kLinkVersion = 5;
-inline constexpr std::size_t kMaxPacket = 64 * 1024;
+using link::kMaxPacket;
+using link::SteadyNs;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;
 inline constexpr std::size_t kMaxBusesShown = 100;
@@ -29,9 +31,6 @@ inline constexpr std::size_t kMaxBeats = 64;       ///< of one record
 inline constexpr std::size_t kMaxIdentities = 64;  ///< certificates that have a role of their own
 /// Writers of commands at a time, of a whole domain: most may command other gateways.
 inline constexpr std::size_t kMaxWritersKnown = 1024;
-
-/// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
-using SteadyNs = std::int64_t;
 
 // --- From the gateway ------------------------------------------------------------------------------------------------
 
@@ -254,12 +253,8 @@ using Record = std::variant<StateRecord, EventRecord, GatewayRecord, ReplyRecord
 /// Texts and lists longer than their bound are cut.
 [[nodiscard]] std::vector<Byte> encode(const Record& record);
 
-enum class DecodeError : std::uint8_t { none, too_short, version, kind, length };
-struct Decoded {
-  Record record;
-  DecodeError error = DecodeError::none;
-};
+using link::DecodeError;
+using Decoded = link::Decoded<Record>;
 [[nodiscard]] Decoded decode(Bytes packet);
-[[nodiscard]] std::string_view text(DecodeError error);
 
 }  // namespace axisgate::dds

@@ -36,7 +36,7 @@ LinkSocket::Packet LinkSocket::receive() {
   const auto length = static_cast<std::size_t>(size);
   if (length > buffer_.size()) return {Received::garbage, {}, "a packet of " + std::to_string(length) + " bytes"};
   Decoded decoded = decode(Bytes(buffer_).first(length));
-  if (decoded.error != DecodeError::none) return {Received::garbage, {}, std::string(text(decoded.error))};
+  if (decoded.error != DecodeError::none) return {Received::garbage, {}, text(decoded.error, "axisgate-dds")};
   return {Received::record, std::move(decoded.record)};
 }
 
