@@ -9,7 +9,7 @@
 namespace axisgate::check {
 namespace {
 
-std::vector<std::string_view> keys_of(const config::AxisLimits& limits) {
+std::vector<std::string_view> keys_of(const profile::AxisLimits& limits) {
   std::vector<std::string_view> keys;
   const auto add = [&keys](const auto& limit, Quantity quantity) {
     if (limit) keys.push_back(profile::limit_key(quantity));
@@ -82,7 +82,7 @@ void warn_about(const config::AxisConfig& config, const model::AxisModel& axis, 
 }  // namespace
 
 ReportLines limit_lines(const config::AxisConfig& config, const model::AxisModel& axis) {
-  const config::AxisLimits& limits = config.limits;
+  const profile::AxisLimits& limits = config.limits;
   const double units = config.units_per_rev.to_double();
   std::vector<std::string> parts;
   if (limits.velocity)

@@ -13,37 +13,15 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/rational.hpp"
-#include "gateway/image/axis_image.hpp"
-#include "gateway/image/command.hpp"
-#include "gateway/model/watch_rules.hpp"
 #include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
 
 namespace axisgate::config {
 
-struct AxisLimits {
-  std::optional<Range> position;                            ///< register units
-  std::optional<std::int64_t> velocity;                     ///< 0.001 rpm
-  std::optional<std::int64_t> acceleration;                 ///< 0.1 rpm/s
-  std::optional<std::int64_t> torque;                       ///< 0.1 % of rated
-  std::optional<std::int64_t> quick_stop_deceleration_min;  ///< 0.1 rpm/s
-  friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
-};
-
-struct AxisConfig {
-  AxisNumber number = 0;
-  std::string name;  ///< "axis 3" where none was given
-  Rational units_per_rev{10000};
-  bool inverted = false;
-  AxisLimits limits;
-  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
-  std::optional<std::int16_t> homing_method;
-  Duration homing_timeout = std::chrono::seconds(60);
-  LeaseRules lease;
-  model::WatchRules watch;
-  Duration jog_timeout = std::chrono::milliseconds(500);
-  std::string motor;  ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
+/// What its model is made of, and what the gateway itself needs to know. The name is "axis 3" where none was given.
+struct AxisConfig : profile::ResolveAxis {
   std::optional<Rational> metres_per_rev{};  ///< what DDS shows it in; none: rad
   bool vertical = false;                     ///< the load falls where the torque is taken away
   std::string pointer;                       ///< JSON pointer of the entry, for messages
@@ -95,6 +73,14 @@ struct Config {
   std::vector<profile::FileRead> read_by_dds{};  ///< what axisgate-dds reads when it starts, but the private key
   std::vector<BusConfig> buses;
 };
+
+/// Calls `look(axis)` for each axis.
+template <class Look>
+void each_axis(const std::vector<BusConfig>& buses, Look&& look) {
+  for (const BusConfig& bus : buses)
+    for (const DriveConfig& drive : bus.drives)
+      for (const AxisConfig& axis : drive.axes) look(axis);
+}
 
 /// What the alarm "configuration changed" is about.
 [[nodiscard]] inline std::vector<profile::FileRead> watched_files(const Config& config) {

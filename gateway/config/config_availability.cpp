@@ -4,10 +4,10 @@
 namespace axisgate::config {
 namespace {
 
-void warn_at_first_use(const ConfigNode& root, std::string_view key, ConfigFaults& faults) {
-  for (const ConfigNode& bus : root.items("buses")) {
-    for (const ConfigNode& drive : bus.items("drives")) {
-      for (const ConfigNode& axis : drive.items("axes")) {
+void warn_at_first_use(const JsonNode& root, std::string_view key, ConfigFaults& faults) {
+  for (const JsonNode& bus : root["buses"].items()) {
+    for (const JsonNode& drive : bus["drives"].items()) {
+      for (const JsonNode& axis : drive["axes"].items()) {
         if (!axis.has(key)) continue;
         faults.warn(axis.pointer(key), "without the key \"dds\" this has no effect");
         return;
@@ -18,11 +18,11 @@ void warn_at_first_use(const ConfigNode& root, std::string_view key, ConfigFault
 
 }  // namespace
 
-void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults) {
+void refuse_unavailable(const JsonNode& root, ConfigFaults& faults) {
   if (root.has("http")) faults.add(root.pointer("http"), "http is not available in this version: remove the key");
 }
 
-void warn_without_effect(const ConfigNode& root, ConfigFaults& faults) {
+void warn_without_effect(const JsonNode& root, ConfigFaults& faults) {
   if (root.has("dds")) return;
   for (const std::string_view key : {"dds_unit", "metres_per_rev"}) warn_at_first_use(root, key, faults);
 }

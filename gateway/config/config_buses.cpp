@@ -35,14 +35,13 @@ std::array<Duration, 3> default_poll(std::size_t drives) {
   return periods;
 }
 
-void read_poll(const ConfigNode& node, BusConfig& bus, ConfigFaults& faults) {
-  const auto poll = node.child("poll");
-  if (!poll) return;
+void read_poll(const JsonNode& node, BusConfig& bus, ConfigFaults& faults) {
+  const JsonNode poll = node["poll"];
   constexpr std::array<std::string_view, 3> kClasses{"fast", "normal", "slow"};
-  for (std::size_t i = 0; i < kClasses.size(); ++i) bus.poll[i] = poll->milliseconds(kClasses[i], bus.poll[i]);
+  for (std::size_t i = 0; i < kClasses.size(); ++i) bus.poll[i] = poll.milliseconds(kClasses[i], bus.poll[i]);
   for (std::size_t i = 1; i < kClasses.size(); ++i) {
-    if (bus.poll[i] >= bus.poll[i - 1] || faults.within(poll->pointer())) continue;
-    faults.add(poll->pointer(kClasses[i]),
+    if (bus.poll[i] >= bus.poll[i - 1] || faults.within(poll.pointer())) continue;
+    faults.add(poll.pointer(kClasses[i]),
                fmt::format("{} ms is shorter than {} ms of class {}: give the slower class the longer period",
                            bus.poll[i] / milliseconds(1), bus.poll[i - 1] / milliseconds(1), kClasses[i - 1]));
   }
@@ -53,7 +52,7 @@ bool has(const Rates& rates, std::uint32_t baud) {
   return std::find(rates.begin(), rates.end(), static_cast<int>(baud)) != rates.end();
 }
 
-void check_serial_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_serial_line(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   if (!faults.within(node.pointer("baud")) && !has(kPortRates, bus.baud))
     faults.add(node.pointer("baud"),
                fmt::format("{} is no rate of a serial port: write 9600, 19200, 38400 or 115200", bus.baud));
@@ -64,7 +63,7 @@ void check_serial_line(const ConfigNode& node, const BusConfig& bus, ConfigFault
                fmt::format("slcan: names a CAN adapter, and {} needs a serial port: write its path", bus.adapter));
 }
 
-void check_kinco_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_kinco_line(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   if (has(kPortRates, bus.baud) && !has(kKincoRates, bus.baud)) {
     faults.warn(node.pointer("baud"),
                 fmt::format("{} is not among the rates of Kinco drives (9600, 19200, 38400, 115200)", bus.baud));
@@ -74,7 +73,7 @@ void check_kinco_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults
   }
 }
 
-void check_rtu_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_rtu_line(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   if (bus.cascade)
     faults.add(node.pointer("cascade"), "only Kinco's RS232 protocol has drives in a chain: remove the key");
   const Duration gap = modbus_rtu::gap_time(std::max(bus.baud, 1U));
@@ -85,7 +84,7 @@ void check_rtu_line(const ConfigNode& node, const BusConfig& bus, ConfigFaults& 
                            static_cast<double>(gap.count()) / 1e6, bus.baud));
 }
 
-void check_timeout(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_timeout(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   const Duration wire = kinco::wire_time(std::max(bus.baud, 1U), bus.cascade);
   if (bus.timeout > wire || faults.within(node.pointer("timeout_ms")) || faults.within(node.pointer("baud"))) return;
   faults.add(node.pointer("timeout_ms"),
@@ -120,7 +119,7 @@ Duration default_gap(const BusConfig& bus) {
   return adapter::keya_serial(bus.adapter) ? keya_gap(baud) : Duration{};
 }
 
-void check_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_bus(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   const bool kinco = bus.adapter == adapter::kKincoSerial;
   const bool rtu = bus.adapter == adapter::kModbusRtu;
   if (kinco || rtu || adapter::keya_serial(bus.adapter)) check_serial_line(node, bus, faults);
@@ -133,12 +132,12 @@ void check_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& fault
   if (adapter::keya(bus.adapter)) check_keya_bus(node, bus, faults);
 }
 
-BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
-  const auto drives = node.items("drives");
-  BusConfig bus = default_bus(node.string("adapter").value_or(""), drives.size());
+BusConfig read_bus(const JsonNode& node, ConfigFaults& faults) {
+  const auto drives = node["drives"].items();
+  BusConfig bus = default_bus(node.text("adapter"), drives.size());
   bus.pointer = node.pointer();
-  bus.name = node.string("name").value_or("");
-  bus.device = node.string("device").value_or("");
+  bus.name = node.text("name");
+  bus.device = node.text("device");
   bus.baud = static_cast<std::uint32_t>(node.integer("baud").value_or(bus.baud));
   bus.bitrate = static_cast<std::uint32_t>(node.integer("bitrate").value_or(bus.bitrate));
   bus.bitrate_given = node.has("bitrate");
@@ -149,18 +148,18 @@ BusConfig read_bus(const ConfigNode& node, ConfigFaults& faults) {
   bus.timeout = node.milliseconds("timeout_ms", bus.timeout);
   bus.min_gap = node.milliseconds("min_gap_ms", default_gap(bus));
   bus.settle = node.milliseconds("settle_ms", bus.settle);
-  bus.poll_given = bus.poll_given || node.child("poll").has_value();
+  bus.poll_given = bus.poll_given || node.has("poll");
   read_poll(node, bus, faults);
   check_bus(node, bus, faults);
-  for (const ConfigNode& drive : drives) bus.drives.push_back(read_drive(drive, bus, faults));
+  for (const JsonNode& drive : drives) bus.drives.push_back(read_drive(drive, bus, faults));
   return bus;
 }
 
 }  // namespace
 
-std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults) {
+std::vector<BusConfig> read_buses(const JsonNode& root, ConfigFaults& faults) {
   std::vector<BusConfig> buses;
-  for (const ConfigNode& node : root.items("buses")) buses.push_back(read_bus(node, faults));
+  for (const JsonNode& node : root["buses"].items()) buses.push_back(read_bus(node, faults));
   return buses;
 }
 

@@ -19,13 +19,13 @@ using std::chrono::milliseconds;
 constexpr std::array kCiaRates{10000U, 20000U, 50000U, 100000U, 125000U, 250000U, 500000U, 800000U, 1000000U};
 constexpr std::uint32_t kLongestInhibit = 0xFFFF;
 
-void refuse_serial_keys(const ConfigNode& node, ConfigFaults& faults) {
+void refuse_serial_keys(const JsonNode& node, ConfigFaults& faults) {
   if (node.has("baud")) faults.add(node.pointer("baud"), "a CAN bus has no baud rate: write \"bitrate\" instead");
   for (const std::string_view key : {"parity", "rs485", "cascade"})
     if (node.has(key)) faults.add(node.pointer(key), "belongs to serial ports, and this is a CAN bus: remove the key");
 }
 
-void check_bitrate(const ConfigNode& node, const BusConfig& bus, bool lawicel, ConfigFaults& faults) {
+void check_bitrate(const JsonNode& node, const BusConfig& bus, bool lawicel, ConfigFaults& faults) {
   const std::string pointer = node.pointer("bitrate");
   if (faults.within(pointer) || bus.adapter != adapter::kCanopen) return;  // Keya's rates are its own
   if (lawicel && !bus.bitrate_given) {
@@ -68,7 +68,7 @@ void stretch_confirming(const BusConfig& bus, std::vector<model::DriveModel>& dr
 
 }  // namespace
 
-void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_can_bus(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   refuse_serial_keys(node, faults);
   const can::CanDevice device = can::parse_can_device(bus.device);
   if (!faults.within(node.pointer("device")) && node.has("device")) {

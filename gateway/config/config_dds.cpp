@@ -35,22 +35,20 @@ bool interface_name(std::string_view text) {
 
 /// The texts of an array that are of the right form; the others are told.
 template <typename Good>
-std::vector<std::string> read_texts(const ConfigNode& node, std::string_view key, ConfigFaults& faults, Good&& good,
+std::vector<std::string> read_texts(const JsonNode& node, std::string_view key, ConfigFaults& faults, Good&& good,
                                     std::string_view what_is_wrong) {
   std::vector<std::string> texts;
-  for (const ConfigNode& item : node.items(key)) {
-    const auto text = item.string();
-    if (!text || faults.within(item.pointer())) continue;
-    if (good(*text)) {
-      texts.push_back(*text);
-    } else {
-      faults.add(item.pointer(), fmt::format("'{}' {}", *text, what_is_wrong));
-    }
+  for (const JsonNode& item : node[key].items()) {
+    if (!item.is_string() || faults.within(item.pointer())) continue;
+    if (good(item.text()))
+      texts.push_back(item.text());
+    else
+      faults.add(item.pointer(), fmt::format("'{}' {}", item.text(), what_is_wrong));
   }
   return texts;
 }
 
-void read_network(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
+void read_network(const JsonNode& node, DdsSettings& settings, ConfigFaults& faults) {
   settings.domain = static_cast<std::uint32_t>(node.integer("domain").value_or(settings.domain));
   settings.multicast = node.flag("multicast", settings.multicast);
   if (node.has("interfaces")) {
@@ -72,12 +70,7 @@ bool loopback_only(const DdsSettings& settings) {
                      [](const std::string& text) { return text == "lo" || is_loopback(text); });
 }
 
-// A ROS 2 node leaves the loopback alone as soon as there is another interface; what it always has is shared memory.
-void read_shared_memory(const ConfigNode& node, DdsSettings& settings) {
-  settings.shared_memory = node.flag("shared_memory", settings.ros2 && loopback_only(settings));
-}
-
-void check_reach(const ConfigNode& node, const DdsSettings& settings, ConfigFaults& faults) {
+void check_reach(const JsonNode& node, const DdsSettings& settings, ConfigFaults& faults) {
   if (node.has("peers") && node.has("discovery_servers")) {
     faults.add(node.pointer("discovery_servers"),
                "with a discovery server participants find each other through it, and `peers` are not asked: remove one "
@@ -97,7 +90,7 @@ void check_reach(const ConfigNode& node, const DdsSettings& settings, ConfigFaul
 }
 
 /// The file that this key names; empty: there is none.
-std::string read_file_name(const ConfigNode& node, std::string_view key, ConfigFaults& faults) {
+std::string read_file_name(const JsonNode& node, std::string_view key, ConfigFaults& faults) {
   const auto name = node.string(key);
   if (!name || faults.within(node.pointer(key))) return {};
   const auto file = std::filesystem::path(faults.file()).parent_path() / *name;
@@ -109,10 +102,9 @@ std::string read_file_name(const ConfigNode& node, std::string_view key, ConfigF
   return {};
 }
 
-void read_roles(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
-  for (const ConfigNode& each : node.items("roles"))
-    settings.roles.push_back(
-        {read_file_name(each, "certificate", faults), role_named(each.string("role").value_or(""))});
+void read_roles(const JsonNode& node, DdsSettings& settings, ConfigFaults& faults) {
+  for (const JsonNode& each : node["roles"].items())
+    settings.roles.push_back({read_file_name(each, "certificate", faults), role_named(each.text("role"))});
   if (!settings.roles.empty() && !node.has("qos_file")) {
     faults.add(node.pointer("roles"),
                "without DDS-Security nobody proves whose certificate is whose: add the \"qos_file\" that turns it on "
@@ -120,19 +112,13 @@ void read_roles(const ConfigNode& node, DdsSettings& settings, ConfigFaults& fau
   }
 }
 
-void read_gateway(const ConfigNode& root, DdsSettings& settings) {
-  const auto node = root.child("gateway");
-  if (!node) return;
-  settings.gateway = dds::gateway_id(node->string("name").value_or(""));
-}
-
-void read_role(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
+void read_role(const JsonNode& node, DdsSettings& settings, ConfigFaults& faults) {
   settings.commands = node.flag("commands", settings.commands);
   read_roles(node, settings, faults);
   settings.role = loopback_only(settings) ? Role::engineer : Role::operator_;
   // Who has no certificate of those must not be given more than who has one.
   if (!settings.roles.empty()) settings.role = Role::viewer;
-  if (const Role given = role_named(node.string("role").value_or("")); given != Role::none) settings.role = given;
+  if (const Role given = role_named(node.text("role")); given != Role::none) settings.role = given;
   if (!settings.commands) {
     for (const std::string_view key : {"role", "roles", "start_deadline_ms", "reply_deadline_ms", "max_age_ms"})
       if (node.has(key)) faults.warn(node.pointer(key), "without \"commands\": true this has no effect");
@@ -146,29 +132,26 @@ void read_role(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faul
                           fmt::join(settings.interfaces, ", "), axisgate::text(settings.role)));
 }
 
-void read_ros2(const ConfigNode& node, DdsSettings& settings, const std::vector<BusConfig>& buses,
-               ConfigFaults& faults) {
-  if (const auto tolerance = node.child("sync_tolerance"); tolerance && !faults.within(tolerance->pointer())) {
-    settings.sync_tolerance = tolerance->rational().value_or(Rational(1, 100)).to_double();
+void read_ros2(const JsonNode& node, DdsSettings& settings, const std::vector<BusConfig>& buses, ConfigFaults& faults) {
+  if (const JsonNode tolerance = node["sync_tolerance"]; tolerance && !faults.within(tolerance.pointer())) {
+    settings.sync_tolerance = tolerance.rational().value_or(Rational(1, 100)).to_double();
     if (!settings.ros2 || !settings.commands)
-      faults.warn(tolerance->pointer(), "without \"ros2\" and \"commands\" this has no effect");
+      faults.warn(tolerance.pointer(), "without \"ros2\" and \"commands\" this has no effect");
   }
   if (!settings.ros2) return;
   std::map<std::string, std::string> seen;
-  for (const BusConfig& bus : buses)
-    for (const DriveConfig& drive : bus.drives)
-      for (const AxisConfig& axis : drive.axes) {
-        const auto [other, is_new] = seen.emplace(dds::ros_token(axis.name), axis.name);
-        if (is_new) continue;
-        faults.add(
-            axis.pointer + "/name",
-            fmt::format("'{}' and '{}' are both {} to ROS 2, which knows joints by their names: give one of them "
-                        "another name",
-                        other->second, axis.name, other->first));
-      }
+  each_axis(buses, [&](const AxisConfig& axis) {
+    const auto known = seen.emplace(dds::ros_token(axis.name), axis.name);
+    if (known.second) return;
+    const auto& [token, other] = *known.first;
+    faults.add(axis.pointer + "/name",
+               fmt::format("'{}' and '{}' are both {} to ROS 2, which knows joints by their names: give one of them "
+                           "another name",
+                           other, axis.name, token));
+  });
 }
 
-void read_times(const ConfigNode& node, DdsSettings& settings, ConfigFaults& faults) {
+void read_times(const JsonNode& node, DdsSettings& settings, ConfigFaults& faults) {
   settings.min_period = node.milliseconds("min_period_ms", settings.min_period);
   settings.max_period = node.milliseconds("max_period_ms", settings.max_period);
   settings.start_deadline = node.milliseconds("start_deadline_ms", settings.start_deadline);
@@ -191,23 +174,23 @@ void read_times(const ConfigNode& node, DdsSettings& settings, ConfigFaults& fau
 
 }  // namespace
 
-std::optional<DdsSettings> read_dds(const ConfigNode& root, const std::vector<BusConfig>& buses, ConfigFaults& faults) {
-  const auto node = root.child("dds");
+std::optional<DdsSettings> read_dds(const JsonNode& root, const std::vector<BusConfig>& buses, ConfigFaults& faults) {
+  const JsonNode node = root["dds"];
   if (!node) return std::nullopt;
   DdsSettings settings;
-  settings.ros2 = node->flag("ros2", settings.ros2);
-  read_gateway(root, settings);
-  read_network(*node, settings, faults);
-  read_shared_memory(*node, settings);
-  check_reach(*node, settings, faults);
-  settings.qos_file = read_file_name(*node, "qos_file", faults);
-  read_role(*node, settings, faults);
-  read_ros2(*node, settings, buses, faults);
-  read_times(*node, settings, faults);
-  for (const BusConfig& bus : buses)
-    for (const DriveConfig& drive : bus.drives)
-      for (const AxisConfig& axis : drive.axes)
-        settings.units.push_back({axis.number, axis.units_per_rev, axis.metres_per_rev});
+  settings.ros2 = node.flag("ros2", settings.ros2);
+  if (root.has("gateway")) settings.gateway = dds::gateway_id(root["gateway"].text("name"));
+  read_network(node, settings, faults);
+  // A ROS 2 node leaves the loopback alone as soon as there is another interface; what it always has is shared memory.
+  settings.shared_memory = node.flag("shared_memory", settings.ros2 && loopback_only(settings));
+  check_reach(node, settings, faults);
+  settings.qos_file = read_file_name(node, "qos_file", faults);
+  read_role(node, settings, faults);
+  read_ros2(node, settings, buses, faults);
+  read_times(node, settings, faults);
+  each_axis(buses, [&](const AxisConfig& axis) {
+    settings.units.push_back({axis.number, axis.units_per_rev, axis.metres_per_rev});
+  });
   return settings;
 }
 
@@ -229,23 +212,22 @@ std::vector<profile::FileRead> read_files_of_dds(const DdsSettings& settings) {
   return out;
 }
 
-std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults) {
-  const bool metres = axis.string("dds_unit") == "m";
-  const auto node = axis.child("metres_per_rev");
+std::optional<Rational> read_metres_per_rev(const JsonNode& axis, ConfigFaults& faults) {
+  const bool metres = axis.text("dds_unit") == "m";
+  const JsonNode node = axis["metres_per_rev"];
   if (metres && !node) {
     faults.add(axis.pointer("dds_unit"),
                "metres need to know how far one motor turn goes: add \"metres_per_rev\", such as \"0.005\" for a "
                "spindle of 5 mm");
   }
-  if (!node || faults.within(node->pointer())) return std::nullopt;
-  const auto length = node->rational();
+  if (!node || faults.within(node.pointer())) return std::nullopt;
+  const auto length = node.rational();
   if (!length || length->numerator() <= 0) {
-    faults.add(node->pointer(),
-               "is no length above 0: write metres as a number or a decimal string, such as \"0.005\"");
+    faults.add(node.pointer(), "is no length above 0: write metres as a number or a decimal string, such as \"0.005\"");
     return std::nullopt;
   }
   if (metres) return length;
-  faults.warn(node->pointer(), "without \"dds_unit\": \"m\" this has no effect: DDS shows the axis in rad");
+  faults.warn(node.pointer(), "without \"dds_unit\": \"m\" this has no effect: DDS shows the axis in rad");
   return std::nullopt;
 }
 

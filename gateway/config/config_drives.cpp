@@ -8,8 +8,8 @@
 namespace axisgate::config {
 namespace {
 
-void read_constants(const ConfigNode& node, DriveConfig& drive, ConfigFaults& faults) {
-  for (const ConfigNode& constant : node.items("constants")) {
+void read_constants(const JsonNode& node, DriveConfig& drive, ConfigFaults& faults) {
+  for (const JsonNode& constant : node["constants"].items()) {
     if (const auto value = constant.rational()) {
       drive.constants.emplace(constant.key(), *value);
     } else if (!faults.within(constant.pointer())) {
@@ -40,7 +40,7 @@ std::string rtu_mistake(int node) {
   return fmt::format("{} is no unit id that a drive may have: they go from 1 to 247", node);
 }
 
-std::uint8_t read_node(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+std::uint8_t read_node(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   if (!node.has("node")) {
     if (bus.adapter == adapter::kKeyaRs232) return 1;  // its frames carry none
     if (!faults.within(bus.pointer + "/adapter")) faults.add(node.pointer(), "key \"node\" is missing");
@@ -57,21 +57,21 @@ std::uint8_t read_node(const ConfigNode& node, const BusConfig& bus, ConfigFault
   return in_use;
 }
 
-std::array<std::optional<std::uint32_t>, 4> read_identity(const ConfigNode& node) {
+std::array<std::optional<std::uint32_t>, 4> read_identity(const JsonNode& node) {
   constexpr std::array<std::string_view, 4> kNumbers{"vendor", "product", "revision", "serial"};
   std::array<std::optional<std::uint32_t>, 4> out{};
-  const auto identity = node.child("identity");
-  for (std::size_t i = 0; identity && i < kNumbers.size(); ++i)
-    if (const auto number = identity->integer(kNumbers[i])) out[i] = static_cast<std::uint32_t>(*number);
+  const JsonNode identity = node["identity"];
+  for (std::size_t i = 0; i < kNumbers.size(); ++i)
+    if (const auto number = identity.integer(kNumbers[i])) out[i] = static_cast<std::uint32_t>(*number);
   return out;
 }
 
 }  // namespace
 
-DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+DriveConfig read_drive(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   DriveConfig drive;
   drive.pointer = node.pointer();
-  drive.profile = node.string("profile").value_or("");
+  drive.profile = node.text("profile");
   drive.node = read_node(node, bus, faults);
   read_constants(node, drive, faults);
   drive.identity = read_identity(node);
@@ -80,7 +80,7 @@ DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFault
     faults.add(node.pointer("identity"),
                fmt::format("{} has no object 1018h to compare with: remove the key", bus.adapter));
   }
-  for (const ConfigNode& axis : node.items("axes")) drive.axes.push_back(read_axis(axis, faults));
+  for (const JsonNode& axis : node["axes"].items()) drive.axes.push_back(read_axis(axis, faults));
   return drive;
 }
 

@@ -25,7 +25,7 @@ bool among(const std::array<std::uint32_t, 3>& rates, std::uint32_t rate) {
   return std::find(rates.begin(), rates.end(), rate) != rates.end();
 }
 
-void check_rate(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_rate(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   if (faults.within(node.pointer("baud")) || faults.within(node.pointer("bitrate"))) return;
   if (bus.adapter == adapter::kKeyaCan && !among(kCanRates, bus.bitrate))
     faults.add(
@@ -54,14 +54,14 @@ void default_keya_bus(BusConfig& bus) {
 
 Duration keya_gap(std::uint32_t baud) { return characters_time(baud, kGapCharacters); }
 
-void check_keya_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults) {
+void check_keya_bus(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   check_rate(node, bus, faults);
   if (bus.adapter == adapter::kKeyaCan) return;
   if (bus.parity == "even" || bus.parity == "odd")
     faults.add(node.pointer("parity"), "Keya drives speak without parity: write \"none\" or remove the key");
   if (bus.cascade)
     faults.add(node.pointer("cascade"), "only Kinco's RS232 protocol has drives in a chain: remove the key");
-  if (bus.adapter == adapter::kKeyaRs232 && node.items("drives").size() > 1)
+  if (bus.adapter == adapter::kKeyaRs232 && node["drives"].items().size() > 1)
     faults.add(
         node.pointer("drives"),
         "RS232 joins the gateway and one drive, whose frames carry no address: give each other drive a bus of its "

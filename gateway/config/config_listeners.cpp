@@ -12,9 +12,9 @@ namespace {
 using modbus_tcp::AllowEntry;
 using modbus_tcp::ListenerSettings;
 
-AllowEntry read_allow_entry(const ConfigNode& node, ConfigFaults& faults) {
+AllowEntry read_allow_entry(const JsonNode& node, ConfigFaults& faults) {
   AllowEntry entry;
-  entry.role = role_named(node.string("role").value_or(""));
+  entry.role = role_named(node.text("role"));
   entry.rank = static_cast<std::uint8_t>(node.integer("rank").value_or(0));
   const auto from = node.string("from");
   if (!from || faults.within(node.pointer("from"))) return entry;
@@ -37,10 +37,10 @@ AllowEntry read_allow_entry(const ConfigNode& node, ConfigFaults& faults) {
   return entry;
 }
 
-void read_allow(const ConfigNode& node, ListenerSettings& settings, ConfigFaults& faults) {
+void read_allow(const JsonNode& node, ListenerSettings& settings, ConfigFaults& faults) {
   settings.has_allow = node.has("allow");
   std::vector<std::string> pointers;
-  for (const ConfigNode& item : node.items("allow")) {
+  for (const JsonNode& item : node["allow"].items()) {
     const AllowEntry entry = read_allow_entry(item, faults);
     const auto same = std::find_if(settings.allow.begin(), settings.allow.end(), [&](const AllowEntry& other) {
       return other.network == entry.network && other.prefix == entry.prefix;
@@ -61,7 +61,7 @@ bool is_everybody(const AllowEntry& entry) {
   return false;
 }
 
-void warn_about_reach(const ConfigNode& node, const ListenerSettings& settings, ConfigFaults& faults) {
+void warn_about_reach(const JsonNode& node, const ListenerSettings& settings, ConfigFaults& faults) {
   if (settings.has_allow && settings.allow.empty())
     faults.warn(node.pointer("allow"), "names nobody, so nobody can connect: name a network, or leave `allow` out");
   if (is_loopback(settings.host)) return;
@@ -82,16 +82,16 @@ void warn_about_reach(const ConfigNode& node, const ListenerSettings& settings, 
   }
 }
 
-ListenerSettings read_listener(const ConfigNode& node, ConfigFaults& faults) {
+ListenerSettings read_listener(const JsonNode& node, ConfigFaults& faults) {
   ListenerSettings settings;
   settings.port = 0;  // until it is known: two listeners that both lack it do not collide
-  settings.low_word_first = node.string("word_order") == "low-first";
-  settings.float_numbers = node.string("numbers") == "float";
-  settings.staged_halves = node.string("halves") == "staged";
-  settings.per_axis_units = node.string("unit_ids") == "per-axis";
-  settings.client_is_address = node.string("client") == "address";
-  settings.posted_writes = node.string("writes") == "posted";
-  settings.offline_reads_fail = node.string("offline_reads") == "exception";
+  settings.low_word_first = node.text("word_order") == "low-first";
+  settings.float_numbers = node.text("numbers") == "float";
+  settings.staged_halves = node.text("halves") == "staged";
+  settings.per_axis_units = node.text("unit_ids") == "per-axis";
+  settings.client_is_address = node.text("client") == "address";
+  settings.posted_writes = node.text("writes") == "posted";
+  settings.offline_reads_fail = node.text("offline_reads") == "exception";
   settings.rearm = node.milliseconds("rearm_ms", settings.rearm);
   settings.start_deadline = node.milliseconds("start_deadline_ms", settings.start_deadline);
   settings.reply_deadline = node.milliseconds("reply_deadline_ms", settings.reply_deadline);
@@ -136,14 +136,14 @@ Role role_named(std::string_view name) {
   return Role::none;
 }
 
-std::vector<ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults) {
+std::vector<ListenerSettings> read_listeners(const JsonNode& root, ConfigFaults& faults) {
   std::vector<ListenerSettings> listeners;
   if (!root.has("modbus_tcp")) {
     faults.add("/modbus_tcp",
                "there is no listener, so nobody could reach the gateway: add [{\"listen\": \"127.0.0.1:1502\"}]");
   }
   std::vector<std::string> pointers;
-  for (const ConfigNode& node : root.items("modbus_tcp")) {
+  for (const JsonNode& node : root["modbus_tcp"].items()) {
     const ListenerSettings settings = read_listener(node, faults);
     for (std::size_t i = 0; i < listeners.size(); ++i) {
       if (!collide(listeners[i], settings)) continue;

@@ -23,19 +23,13 @@ void warn_about_unit_ids(const Config& config, ConfigFaults& faults) {
   constexpr AxisNumber kLastUnit = 254;
   for (std::size_t i = 0; i < config.modbus_tcp.size(); ++i) {
     if (!config.modbus_tcp[i].per_axis_units) continue;
-    for (const BusConfig& bus : config.buses) {
-      for (const DriveConfig& drive : bus.drives) {
-        for (const AxisConfig& axis : drive.axes) {
-          if (axis.number <= kLastUnit) continue;
-          faults.warn(
-              axis.pointer + "/axis",
-              fmt::format(
-                  "/modbus_tcp/{} gives each axis a unit id, which reach axes 1 to 254: axis {} is seen through "
-                  "unit 255 only",
-                  i, axis.number));
-        }
-      }
-    }
+    each_axis(config.buses, [&](const AxisConfig& axis) {
+      if (axis.number > kLastUnit)
+        faults.warn(axis.pointer + "/axis",
+                    fmt::format("/modbus_tcp/{} gives each axis a unit id, which reach axes 1 to 254: axis {} is seen "
+                                "through unit 255 only",
+                                i, axis.number));
+    });
   }
 }
 
@@ -52,7 +46,7 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
   const auto& document = std::get<nlohmann::json>(read);
   check_schema(document, faults);
 
-  const ConfigNode root(document, "");
+  const JsonNode root(document, "");
   loaded.config.file = file;
   if (root.is_object()) {
     refuse_unavailable(root, faults);

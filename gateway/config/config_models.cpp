@@ -25,26 +25,7 @@ profile::ResolveInput input_of(const BusConfig& bus, const DriveConfig& config) 
   input.constants = config.constants;
   input.identity = config.identity;
   input.poll = bus.poll;
-  for (const AxisConfig& axis : config.axes) {
-    profile::ResolveAxis resolved;
-    resolved.number = axis.number;
-    resolved.name = axis.name;
-    resolved.units_per_rev = axis.units_per_rev;
-    resolved.inverted = axis.inverted;
-    resolved.position_limits = axis.limits.position;
-    resolved.velocity_limit = axis.limits.velocity;
-    resolved.acceleration_limit = axis.limits.acceleration;
-    resolved.torque_limit = axis.limits.torque;
-    resolved.quick_stop_deceleration_min = axis.limits.quick_stop_deceleration_min;
-    resolved.standstill_velocity = axis.standstill_velocity;
-    resolved.homing_method = axis.homing_method;
-    resolved.homing_timeout = axis.homing_timeout;
-    resolved.lease = axis.lease;
-    resolved.watch = axis.watch;
-    resolved.jog_timeout = axis.jog_timeout;
-    resolved.motor = axis.motor;
-    input.axes.push_back(std::move(resolved));
-  }
+  input.axes.assign(config.axes.begin(), config.axes.end());
   return input;
 }
 

@@ -10,32 +10,34 @@
 
 #include "gateway/config/config.hpp"
 #include "gateway/config/config_fault.hpp"
-#include "gateway/config/config_node.hpp"
 #include "gateway/model/model.hpp"
+#include "gateway/profile/json/json_node.hpp"
 
 namespace axisgate::config {
 
+using profile::JsonNode;
+
 /// What the schema knows and this version has not: refused by name, never ignored.
-void refuse_unavailable(const ConfigNode& root, ConfigFaults& faults);
+void refuse_unavailable(const JsonNode& root, ConfigFaults& faults);
 
 /// none: no role has this name.
 [[nodiscard]] Role role_named(std::string_view name);
-[[nodiscard]] std::vector<modbus_tcp::ListenerSettings> read_listeners(const ConfigNode& root, ConfigFaults& faults);
-[[nodiscard]] std::vector<BusConfig> read_buses(const ConfigNode& root, ConfigFaults& faults);
-[[nodiscard]] DriveConfig read_drive(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
-[[nodiscard]] AxisConfig read_axis(const ConfigNode& node, ConfigFaults& faults);
+[[nodiscard]] std::vector<modbus_tcp::ListenerSettings> read_listeners(const JsonNode& root, ConfigFaults& faults);
+[[nodiscard]] std::vector<BusConfig> read_buses(const JsonNode& root, ConfigFaults& faults);
+[[nodiscard]] DriveConfig read_drive(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults);
+[[nodiscard]] AxisConfig read_axis(const JsonNode& node, ConfigFaults& faults);
 /// The section "dds", with the units of all axes.
-[[nodiscard]] std::optional<dds::DdsSettings> read_dds(const ConfigNode& root, const std::vector<BusConfig>& buses,
+[[nodiscard]] std::optional<dds::DdsSettings> read_dds(const JsonNode& root, const std::vector<BusConfig>& buses,
                                                        ConfigFaults& faults);
 /// What axisgate-dds reads when it starts, but the private key.
 [[nodiscard]] std::vector<profile::FileRead> read_files_of_dds(const dds::DdsSettings& settings);
 /// An axis's keys "dds_unit" and "metres_per_rev"; no value: rad.
-[[nodiscard]] std::optional<Rational> read_metres_per_rev(const ConfigNode& axis, ConfigFaults& faults);
+[[nodiscard]] std::optional<Rational> read_metres_per_rev(const JsonNode& axis, ConfigFaults& faults);
 
 /// Names, numbers, devices and stations that may be there once only, over the whole file.
 void check_unique(const Config& config, ConfigFaults& faults);
 /// Keys that are right and have no effect as things stand: one warning for each.
-void warn_without_effect(const ConfigNode& root, ConfigFaults& faults);
+void warn_without_effect(const JsonNode& root, ConfigFaults& faults);
 
 /// The profiles of all drives, resolved for their axes; what was read for it is added to the configuration. Drives with
 /// mistakes of their own are left out.
@@ -53,7 +55,7 @@ void settle_poll(BusConfig& bus, std::vector<model::DriveModel>& drives);
 void settle_rtu_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults);
 
 /// What a bus on CAN may not have, and what its device must be.
-void check_can_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+void check_can_bus(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults);
 /// canopen: the same for timeouts and periods; and inhibit and confirmation times that leave the line to requests,
 /// however many drives share it.
 void settle_can_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults);
@@ -63,7 +65,7 @@ void default_keya_bus(BusConfig& bus);
 /// The silence that is kept between two frames of its serial protocols where the configuration names none.
 [[nodiscard]] Duration keya_gap(std::uint32_t baud);
 /// Rates, parity and number of drives of a bus that speaks one of Keya's protocols.
-void check_keya_bus(const ConfigNode& node, const BusConfig& bus, ConfigFaults& faults);
+void check_keya_bus(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults);
 /// Keya's protocols: the same for timeouts and periods.
 void settle_keya_buses(Config& config, std::vector<std::vector<model::DriveModel>>& models, ConfigFaults& faults);
 

@@ -25,10 +25,10 @@ std::vector<GatewayStage::Line> one_line(Subject subject, const PlantOptions& op
   if (options.open_points) draw_open_points(lines.back(), *options.open_points);
   if (options.velocity_limit) {
     GatewayStage::Line& line = lines.back();
-    for (auto& staged : line.drives) staged.axis.velocity_limit = options.velocity_limit;
-    for (auto& staged : line.rtu_drives) staged.axis.velocity_limit = options.velocity_limit;
-    for (auto& staged : line.can_drives) staged.axis.velocity_limit = options.velocity_limit;
-    for (auto& staged : line.keya_drives) staged.axis.velocity_limit = options.velocity_limit;
+    for (auto& staged : line.drives) staged.axis.limits.velocity = options.velocity_limit;
+    for (auto& staged : line.rtu_drives) staged.axis.limits.velocity = options.velocity_limit;
+    for (auto& staged : line.can_drives) staged.axis.limits.velocity = options.velocity_limit;
+    for (auto& staged : line.keya_drives) staged.axis.limits.velocity = options.velocity_limit;
   }
   if (options.other_bus) {
     lines.push_back(line_of(simulated::KincoType::jd, kAxisOfOtherBus));

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gateway/profile/json/json_node.hpp"
+
 namespace axisgate::profile {
 namespace {
 
@@ -111,6 +113,15 @@ TEST(JsonFile, NumbersAreExactAsWritten) {
   EXPECT_EQ(rational_of(json::parse("65536")), Rational(65536));
   EXPECT_EQ(rational_of(json::parse("\"ten\"")), std::nullopt);
   EXPECT_EQ(rational_of(json::parse("true")), std::nullopt);
+}
+
+// What the schema has refused is read on all the same, for the mistakes behind it.
+TEST(JsonNode, TakesNoTimeThatOverflows) {
+  const json document = json::parse(R"({"day": 86400000, "longer": 9223372036854775807, "negative": -1})");
+  const JsonNode node(document, "");
+  EXPECT_EQ(node.milliseconds("day", Duration(7)), std::chrono::hours(24));
+  EXPECT_EQ(node.milliseconds("longer", Duration(7)), Duration(7));
+  EXPECT_EQ(node.milliseconds("negative", Duration(7)), Duration(7));
 }
 
 }  // namespace

@@ -87,8 +87,8 @@ TEST(DriveConstants, OnceReadABindingIsAsIfTheyHadBeenConfigured) {
     ResolveInput input = one_axis("modbus-rtu");
     input.axes[0].inverted = inverted;
     input.axes[0].units_per_rev = Rational(60000, 37);
-    input.axes[0].position_limits = Range{-1000, 250000};
-    input.axes[0].velocity_limit = 700000;
+    input.axes[0].limits.position = Range{-1000, 250000};
+    input.axes[0].limits.velocity = 700000;
     const model::DriveModel read = applied(waiting(input), {Rational(2000, 3)});
     input.constants["counts"] = Rational(2000, 3);
     const model::DriveModel configured = waiting(input);

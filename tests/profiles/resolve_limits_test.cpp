@@ -51,11 +51,11 @@ TEST(ResolvedLimits, SpeedsRampsAndTorqueStartAtTheLeastThatTheDriveHolds) {
 TEST(ResolvedLimits, TheAxisLimitsNarrowWhatAClientMayWrite) {
   ResolveInput input = kinco_axis();
   input.constants["rated_current_a"] = Rational(4);
-  input.axes[0].position_limits = Range{-1000, 250000};
-  input.axes[0].velocity_limit = 1500000;
-  input.axes[0].acceleration_limit = 6000;
-  input.axes[0].torque_limit = 800;
-  input.axes[0].quick_stop_deceleration_min = 3000;
+  input.axes[0].limits.position = Range{-1000, 250000};
+  input.axes[0].limits.velocity = 1500000;
+  input.axes[0].limits.acceleration = 6000;
+  input.axes[0].limits.torque = 800;
+  input.axes[0].limits.quick_stop_deceleration_min = 3000;
   const model::DriveModel model = resolved(shipped("kinco-md"), input);
   EXPECT_EQ(binding(model, Quantity::target_position).limits, (Range{-1000, 250000}));
   EXPECT_EQ(binding(model, Quantity::target_velocity).limits, (Range{-1500000, 1500000}));
@@ -96,7 +96,7 @@ TEST(RatedSpeed, IsTheConstantOfTheMotorOrNotKnown) {
 
 TEST(ResolvedLimits, AnAxisLimitThatLeavesNothingIsAFault) {
   ResolveInput input = kinco_axis();
-  input.axes[0].position_limits = Range{3000000000, 4000000000};
+  input.axes[0].limits.position = Range{3000000000, 4000000000};
   const std::vector<Fault> faults = refused(shipped("kinco-jd"), input);
   ASSERT_FALSE(faults.empty());
   EXPECT_EQ(faults[0].pointer, "/axes/0/limits/position");

@@ -40,12 +40,12 @@ const std::vector<Refusal> kRefusals{
      [](ResolveInput& input) { input.axes[0].homing_method = static_cast<std::int16_t>(15); }, "/axes/0/homing_method",
      "this drive has no homing method 15"},
     {"a limit in a unit that the drive cannot have yet", shipped("kinco-jd"),
-     [](ResolveInput& input) { input.axes[0].torque_limit = 500; }, "/axes/0/limits/torque",
+     [](ResolveInput& input) { input.axes[0].limits.torque = 500; }, "/axes/0/limits/torque",
      "limits nothing: this drive's unit of it needs rated_current_a: add it to the drive's \"constants\", or take the "
      "limit out"},
     {"the same, with two constants missing", shipped("kinco-md"),
      [](ResolveInput& input) {
-       input.axes[0].torque_limit = 500;
+       input.axes[0].limits.torque = 500;
        input.constants.clear();
      },
      "/axes/0/limits/torque", "needs rated_current_a and peak_current_a: add them to"},

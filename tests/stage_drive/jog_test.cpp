@@ -70,7 +70,7 @@ TEST(JogOnAnAxis, AStopIsCarriedOutWhateverJogVelocityStandsBesideIt) {
 // From 600 rpm it takes 30 turns to stop.
 TEST(JogOnAnAxis, IsRefusedWhereItCouldNotEndBeforeTheLimit) {
   RigOptions options = leased();
-  options.axis.position_limits = Range{-30'000, 30'000};
+  options.axis.limits.position = Range{-30'000, 30'000};
   options.axis.homing_method = 35;
   JoggedAxis axis(options);
   ASSERT_TRUE(axis.homes());
@@ -89,7 +89,7 @@ TEST(JogOnAnAxis, IsRefusedWhereItCouldNotEndBeforeTheLimit) {
 TEST(JogOnAnAxis, GoesNoFurtherWhereItStandsBeyondWhatItsRegisterCanShow) {
   RigOptions options = leased();
   options.axis.units_per_rev = Rational(10'000'000);
-  options.axis.position_limits = Range{-2'000'000'000, 2'000'000'000};
+  options.axis.limits.position = Range{-2'000'000'000, 2'000'000'000};
   options.axis.homing_method = 35;
   JoggedAxis axis(options);
   ASSERT_TRUE(axis.homes());
@@ -108,7 +108,7 @@ TEST(JogOnAnAxis, GoesNoFurtherWhereItStandsBeyondWhatItsRegisterCanShow) {
 TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
   for (const bool of_the_drive : {false, true}) {
     RigOptions options = leased();
-    if (!of_the_drive) options.axis.position_limits = Range{-30'000, 30'000};
+    if (!of_the_drive) options.axis.limits.position = Range{-30'000, 30'000};
     options.axis.homing_method = 35;
     JoggedAxis axis(options);
     const WriteBatch limits =
@@ -135,7 +135,7 @@ TEST(JogOnAnAxis, EndsAtThePositionLimitOfAHomedAxis) {
 // What is asked of the drive keeps the polls waiting: the position is older than it looks.
 TEST(JogOnAnAxis, EndsAtThePositionLimitAlsoWhereSomebodyWritesAllTheTime) {
   RigOptions options = leased();
-  options.axis.position_limits = Range{-300'000, 300'000};
+  options.axis.limits.position = Range{-300'000, 300'000};
   options.axis.homing_method = 35;
   JoggedAxis axis(options);
   ASSERT_TRUE(axis.homes());

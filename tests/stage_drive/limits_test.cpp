@@ -13,8 +13,8 @@ using enum Situation;
 
 RigOptions limited() {
   RigOptions options;
-  options.axis.position_limits = Range{-20'000, 20'000};
-  options.axis.velocity_limit = 1'000'000;
+  options.axis.limits.position = Range{-20'000, 20'000};
+  options.axis.limits.velocity = 1'000'000;
   return options;
 }
 
@@ -46,7 +46,7 @@ TEST(Limits, HoldForEveryWayIn) {
 // 3.4: command 7 goes "by target_position from the set-point position": a distance is no position.
 TEST(Limits, OfThePositionAreThoseOfWhereARelativeMoveEnds) {
   RigOptions options;
-  options.axis.position_limits = Range{1'000, 50'000};
+  options.axis.limits.position = Range{1'000, 50'000};
   Rig rig(KincoType::jd, options);
   rig.bring_to(enabled);
   const auto move = [&](Command command, std::int64_t target) {
@@ -137,8 +137,8 @@ TEST(Limits, OfSpeedsThatTheDriveHoldsFromElsewhereHoldInEveryKindOfMotion) {
     for (const bool raw : {false, true}) {
       SCOPED_TRACE(testing::Message() << row(held.shown).name << (raw ? ", raw" : ""));
       RigOptions options;
-      options.axis.velocity_limit = kVelocity;
-      options.axis.acceleration_limit = kAcceleration;
+      options.axis.limits.velocity = kVelocity;
+      options.axis.limits.acceleration = kAcceleration;
       options.axis.homing_method = 19;
       Rig rig(KincoType::jd, options);
       if (held.poked != 0) rig.motor().poke(held.at, held.poked);

@@ -38,7 +38,7 @@ class QuickRestart : public testing::TestWithParam<KincoType> {
       for (const auto pause : {0ms, 20ms, 50ms, 100ms, 200ms, 400ms}) {
         SCOPED_TRACE(testing::Message() << boot_time.count() << ' ' << pause.count());
         RigOptions options = quick(boot_time);
-        options.axis.velocity_limit = limit;
+        options.axis.limits.velocity = limit;
         Rig rig(GetParam(), options);
         rig.bring_to(enabled);
         ASSERT_NO_FATAL_FAILURE(before(rig));

@@ -114,7 +114,7 @@ TEST(Stepper, TheMailboxStartsNothingThatNoRegisterStarts) {
 
 TEST(Stepper, TheMailboxCannotWriteHalfATargetBehindTheLimits) {
   StepperOptions options;
-  options.axis.position_limits = Range{-50'000, 50'000};
+  options.axis.limits.position = Range{-50'000, 50'000};
   StepperRig rig(options);
   rig.online();
   rig.enable();

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/profile/eds/eds.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <charconv>
+
+#include "gateway/core/name_table.hpp"
 
 namespace axisgate::profile {
 namespace {
@@ -115,6 +118,11 @@ class Sections {
   Section* current_ = nullptr;
 };
 
+std::string text_in(const Section& section, const char* key) {
+  const auto at = section.keys.find(key);
+  return at == section.keys.end() ? std::string() : at->second.text;
+}
+
 /// Turns sections into objects.
 class Objects {
  public:
@@ -205,11 +213,6 @@ class Objects {
     return *value >= span / 2 && *value < span ? *value - span : *value;
   }
 
-  static std::string text_in(const Section& section, const char* key) {
-    const auto at = section.keys.find(key);
-    return at == section.keys.end() ? std::string() : at->second.text;
-  }
-
   void fault(std::size_t line, std::string message) {
     if (out_.faults.size() < kMaxEdsFaults) out_.faults.push_back({line, std::move(message)});
   }
@@ -231,12 +234,8 @@ Eds parse_eds(std::string_view text) {
   Objects objects(sections, out);
   objects.read();
   if (const Section* device = sections.find("deviceinfo")) {
-    const auto text_of = [&](const char* key) {
-      const auto at = device->keys.find(key);
-      return at == device->keys.end() ? std::string() : at->second.text;
-    };
-    out.vendor_name = text_of("vendorname");
-    out.product_name = text_of("productname");
+    out.vendor_name = text_in(*device, "vendorname");
+    out.product_name = text_in(*device, "productname");
     out.vendor = objects.number_in(*device, "vendornumber");
     out.product = objects.number_in(*device, "productnumber");
     out.revision = objects.number_in(*device, "revisionnumber");
@@ -266,20 +265,15 @@ std::optional<EdsWidth> width_of(EdsType type) {
 }
 
 std::string eds_type_name(EdsType type) {
-  static constexpr std::array<std::pair<EdsType, std::string_view>, 19> kNames{{
+  static constexpr auto kNames = names_of<EdsType>({
       {0x01, "BOOLEAN"},         {0x02, "INTEGER8"},     {0x03, "INTEGER16"},      {0x04, "INTEGER32"},
       {0x05, "UNSIGNED8"},       {0x06, "UNSIGNED16"},   {0x07, "UNSIGNED32"},     {0x08, "REAL32"},
       {0x09, "VISIBLE_STRING"},  {0x0A, "OCTET_STRING"}, {0x0B, "UNICODE_STRING"}, {0x0C, "TIME_OF_DAY"},
       {0x0D, "TIME_DIFFERENCE"}, {0x0F, "DOMAIN"},       {0x10, "INTEGER24"},      {0x11, "REAL64"},
       {0x15, "INTEGER64"},       {0x16, "UNSIGNED24"},   {0x1B, "UNSIGNED64"},
-  }};
-  const auto* const named =
-      std::find_if(kNames.begin(), kNames.end(), [&](const auto& row) { return row.first == type; });
-  if (named != kNames.end()) return std::string(named->second);
-  constexpr std::string_view kHex = "0123456789ABCDEF";
-  std::string out = "type 0x";
-  for (int shift = 12; shift >= 0; shift -= 4) out += kHex[static_cast<std::size_t>(type >> shift) & 0xFU];
-  return out;
+  });
+  const std::string_view name = kNames.of(type, "");
+  return name.empty() ? fmt::format("type 0x{:04X}", type) : std::string(name);
 }
 
 }  // namespace axisgate::profile

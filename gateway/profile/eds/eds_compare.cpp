@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/profile/eds/eds_compare.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 #include "gateway/profile/read/profile_reading.hpp"
 
@@ -13,21 +13,15 @@ constexpr std::string_view kCanopen = "canopen";
 constexpr std::uint16_t kFirstTpdo = 0x1800, kFirstMapping = 0x1A00;
 constexpr std::uint8_t kInhibit = 3, kEventTimer = 5;
 
-std::string hex(std::uint32_t value, int figures) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string out;
-  for (int shift = 4 * (figures - 1); shift >= 0; shift -= 4) out += kDigits[(value >> shift) & 0xFU];
-  return out;
-}
-
 /// As a section of it would be called.
 std::string section_of(ObjectAddress address) {
-  return hex(address.index, 4) + (address.sub == 0 ? "" : "sub" + hex(address.sub, address.sub > 0xF ? 2 : 1));
+  const std::string index = fmt::format("{:04X}", address.index);
+  return address.sub == 0 ? index : fmt::format("{}sub{:X}", index, address.sub);
 }
 
-std::string type_text(const DataType& type) {
-  return std::string(type.is_signed ? "i" : "u") + std::to_string(8 * type.size);
-}
+std::string type_text(const DataType& type) { return fmt::format("{}{}", type.is_signed ? "i" : "u", 8 * type.size); }
+
+std::string limit_text(const std::optional<std::int64_t>& limit) { return limit ? std::to_string(*limit) : "none"; }
 
 class Comparison {
  public:
@@ -45,10 +39,6 @@ class Comparison {
   }
 
  private:
-  static const Place* place_of(const Object& object) {
-    const auto at = object.places.find(kCanopen);
-    return at == object.places.end() ? nullptr : &at->second;
-  }
   [[nodiscard]] const EdsObject* find(ObjectAddress address) const {
     const auto at = eds_.objects.find(address);
     return at == eds_.objects.end() ? nullptr : &at->second;
@@ -62,7 +52,7 @@ class Comparison {
   }
 
   void compare(const Object& object) {
-    const Place* place = place_of(object);
+    const Place* place = object.place(kCanopen);
     if (place == nullptr) return;
     const std::string at = pointer_to(pointer_to(object.pointer, "at"), kCanopen);
     const EdsObject* known = find(place->address);
@@ -81,7 +71,7 @@ class Comparison {
     const auto width = width_of(known.type);
     const bool fits = width && (object.any_width ? width->size <= type.size : width->size == type.size);
     if (!fits || width->is_signed != type.is_signed)
-      say(at, known.section, "is " + type_text(type) + " here, " + eds_type_name(known.type) + " in the EDS");
+      say(at, known.section, fmt::format("is {} here, {} in the EDS", type_text(type), eds_type_name(known.type)));
   }
 
   void compare_access(const Object& object, const EdsObject& known) {
@@ -95,25 +85,23 @@ class Comparison {
 
   void compare_range(const std::string& at, const Range& range, const EdsObject& known) {
     if (known.low && range.min < *known.low)
-      say(at, known.section, "begins at " + std::to_string(range.min) + ", LowLimit is " + std::to_string(*known.low));
+      say(at, known.section, fmt::format("begins at {}, LowLimit is {}", range.min, *known.low));
     if (known.high && range.max > *known.high)
-      say(at, known.section, "ends at " + std::to_string(range.max) + ", HighLimit is " + std::to_string(*known.high));
+      say(at, known.section, fmt::format("ends at {}, HighLimit is {}", range.max, *known.high));
   }
 
   void compare_value(const std::string& name, std::int64_t raw, const std::string& at) {
     const Object* object = profile_.find(name, 0);
-    const Place* place = object == nullptr ? nullptr : place_of(*object);
+    const Place* place = object == nullptr ? nullptr : object->place(kCanopen);
     const EdsObject* known = place == nullptr ? nullptr : find(place->address);
     if (known == nullptr) return;  // told with the object, or not on canopen
     if ((known->low && raw < *known->low) || (known->high && raw > *known->high))
       say(at, known->section,
-          std::to_string(raw) + " is written, the limits are " +
-              (known->low ? std::to_string(*known->low) : std::string("none")) + " and " +
-              (known->high ? std::to_string(*known->high) : std::string("none")));
+          fmt::format("{} is written, the limits are {} and {}", raw, limit_text(known->low), limit_text(known->high)));
   }
 
   void compare_setup(const WriteSpec& write) {
-    if (!write.on.empty() && std::find(write.on.begin(), write.on.end(), kCanopen) == write.on.end()) return;
+    if (!write.is_on(kCanopen)) return;
     for (const ValueSpec& value : write.values)
       if (const auto* raw = std::get_if<std::int64_t>(&value))
         compare_value(write.object, *raw, pointer_to(write.pointer, "value"));
@@ -144,9 +132,8 @@ class Comparison {
   }
 
   void compare_mapped(const std::string& name, const std::string& at) {
-    const auto same = [&](const Object& object) { return object.name == name; };
-    const auto object = std::find_if(profile_.objects.begin(), profile_.objects.end(), same);
-    const Place* place = object == profile_.objects.end() ? nullptr : place_of(*object);
+    const Object* object = profile_.named(name);
+    const Place* place = object == nullptr ? nullptr : object->place(kCanopen);
     const EdsObject* known = place == nullptr ? nullptr : find(place->address);
     if (known == nullptr) return;  // told with the object
     if (!known->mappable) return say(at, known->section, "is mapped here, PDOMapping is 0 in the EDS");

@@ -208,17 +208,7 @@ std::vector<SchemaFault> validate(const json& document, const json& schema) {
 }
 
 std::string pointer_to(std::string_view parent, std::string_view key) {
-  std::string out(parent);
-  out += '/';
-  for (const char c : key) {
-    if (c == '~')
-      out += "~0";
-    else if (c == '/')
-      out += "~1";
-    else
-      out += c;
-  }
-  return out;
+  return (json::json_pointer(std::string(parent)) / std::string(key)).to_string();
 }
 
 std::string pointer_to(std::string_view parent, std::size_t index) { return pointer_to(parent, std::to_string(index)); }

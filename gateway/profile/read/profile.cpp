@@ -11,17 +11,26 @@ Range Object::numbers() const {
   return out;
 }
 
+const Place* Object::place(std::string_view protocol) const {
+  const auto at = places.find(protocol);
+  return at == places.end() ? nullptr : &at->second;
+}
+
 const std::string& QuantitySpec::unit_of(const Object& object) const {
   if (units.empty()) return object.unit;
   return object.slot < units.size() ? units[object.slot] : units.front();
 }
 
+bool WriteSpec::is_on(std::string_view protocol) const {
+  return on.empty() || std::ranges::find(on, protocol) != on.end();
+}
+
 bool ConfiguredModeSpec::is_fixed_on(std::string_view protocol) const {
-  return std::find(fixed_on.begin(), fixed_on.end(), protocol) != fixed_on.end();
+  return std::ranges::find(fixed_on, protocol) != fixed_on.end();
 }
 
 bool KeepAliveSpec::is_on(std::string_view protocol) const {
-  return on.empty() || std::find(on.begin(), on.end(), protocol) != on.end();
+  return on.empty() || std::ranges::find(on, protocol) != on.end();
 }
 
 const Object* Profile::find(std::string_view object, AxisSlot motor) const {
@@ -34,9 +43,13 @@ const Object* Profile::find(std::string_view object, AxisSlot motor) const {
   return shared;
 }
 
+const Object* Profile::named(std::string_view object) const {
+  const auto at = std::ranges::find(objects, object, &Object::name);
+  return at == objects.end() ? nullptr : &*at;
+}
+
 const QuantitySpec* Profile::find(Quantity quantity) const {
-  const auto at = std::find_if(quantities.begin(), quantities.end(),
-                               [&](const QuantitySpec& spec) { return spec.quantity == quantity; });
+  const auto at = std::ranges::find(quantities, quantity, &QuantitySpec::quantity);
   return at == quantities.end() ? nullptr : &*at;
 }
 

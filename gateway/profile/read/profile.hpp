@@ -65,6 +65,8 @@ struct Object {
   std::string pointer;
   [[nodiscard]] Range numbers() const;  ///< of its type and range together
   [[nodiscard]] DataType type_at(const Place& place) const { return place.type.value_or(type); }
+  /// Null: the protocol does not have it.
+  [[nodiscard]] const Place* place(std::string_view protocol) const;
 };
 
 struct BitsSpec {
@@ -135,6 +137,7 @@ struct WriteSpec {
   std::vector<std::string> on;           ///< protocols; empty: all
   std::string why;
   std::string pointer;
+  [[nodiscard]] bool is_on(std::string_view protocol) const;
 };
 
 struct CheckSpec {
@@ -267,6 +270,8 @@ struct Profile {
 
   /// The object that `name` means for this motor: its own ("A.speed") before the drive's ("speed").
   [[nodiscard]] const Object* find(std::string_view object, AxisSlot motor) const;
+  /// The object of exactly this name.
+  [[nodiscard]] const Object* named(std::string_view object) const;
   [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
 };
 

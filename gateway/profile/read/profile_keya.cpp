@@ -3,13 +3,10 @@
 // exchange. Everything that the adapters take for granted is checked here.
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "gateway/profile/read/profile_reading.hpp"
 
 namespace axisgate::profile {
-
-using nlohmann::json;
 
 namespace {
 
@@ -37,40 +34,41 @@ constexpr std::int64_t kLastQuery = 0xFF;
 constexpr const char* kPlaceOnALine =
     "give a query and its byte, {\"query\": 2, \"byte\": 2}, or, of the control frame, \"on\" or \"value\"";
 
-const Layout& layout_of(std::string_view protocol) {
-  return *std::find_if(kLayouts.begin(), kLayouts.end(), [&](const Layout& l) { return l.protocol == protocol; });
-}
+const Layout& layout_of(std::string_view protocol) { return *std::ranges::find(kLayouts, protocol, &Layout::protocol); }
 
 /// Where one object is, on one protocol.
 class PlaceInFrame {
  public:
-  PlaceInFrame(Reading& reading, std::string_view protocol, const Object& object, std::string pointer)
-      : reading_(reading), layout_(layout_of(protocol)), object_(object), pointer_(std::move(pointer)) {}
+  PlaceInFrame(Reading& reading, const Object& object, const JsonNode& node)
+      : reading_(reading), layout_(layout_of(node.key())), object_(object), node_(node) {}
 
-  std::optional<Place> read(const json& node, Place out) {
+  std::optional<Place> read(Place out) {
     type_ = object_.type_at(out);
-    byte_ = whole_in(node, "byte", layout_.first);
-    return layout_.by_index ? on_can(node, std::move(out)) : on_a_line(node, std::move(out));
+    byte_ = node_.whole("byte", layout_.first);
+    return layout_.by_index ? on_can(std::move(out)) : on_a_line(std::move(out));
   }
 
  private:
-  std::nullopt_t refuse(const std::string& why) {
-    reading_.fault(pointer_, why);
+  std::nullopt_t refuse(std::string why) {
+    reading_.fault(node_.pointer(), std::move(why));
     return std::nullopt;
   }
   std::nullopt_t refuse_bytes(std::int64_t first, std::int64_t end) {
-    return refuse("does not lie within bytes " + std::to_string(first) + " to " + std::to_string(end - 1) +
-                  ", which hold the data");
+    return refuse(fmt::format("does not lie within bytes {} to {}, which hold the data", first, end - 1));
   }
   [[nodiscard]] bool fits(std::int64_t first, std::int64_t end) const {
     return byte_ >= first && byte_ + type_.size <= end;
   }
+  /// "on", or {"address": "on"}.
+  [[nodiscard]] bool is_called(std::string_view name) const {
+    return node_.text() == name || node_.text("address") == name;
+  }
 
-  std::optional<Place> on_can(const json& node, Place out) {
-    if (member(node, "query") != nullptr) return refuse("keya-can has index and sub-index: \"2103.01\"");
-    if (member(node, "heartbeat") != nullptr && member(node, "byte") != nullptr)
+  std::optional<Place> on_can(Place out) {
+    if (node_.has("query")) return refuse("keya-can has index and sub-index: \"2103.01\"");
+    if (node_.has("heartbeat") && node_.has("byte"))
       return refuse("\"heartbeat\" is the byte already: leave out \"byte\"");
-    if (member(node, "heartbeat") != nullptr) return in_heartbeat(whole_in(node, "heartbeat", 0), std::move(out));
+    if (node_.has("heartbeat")) return in_heartbeat(node_.whole("heartbeat", 0), std::move(out));
     const std::uint16_t page = out.address.index & 0xFF00U;
     if (page == (kQuery & 0xFF00U)) return in_query(std::move(out), out.address.index, out.address.sub);
     if (page != (kValue & 0xFF00U)) return refuse("keya-can has commands, 20xx, and queries, 21xx");
@@ -79,15 +77,14 @@ class PlaceInFrame {
     return command(std::move(out), out.address.index, out.address.sub);
   }
 
-  std::optional<Place> on_a_line(const json& node, Place out) {
-    if (node == "on" || text_in(node, "address") == "on") return enable_bit(std::move(out));
-    if (node == "value" || text_in(node, "address") == "value") return value(std::move(out));
-    const json* number = member(node, "query");
-    if (number == nullptr || member(node, "heartbeat") != nullptr) return refuse(kPlaceOnALine);
-    const std::optional<std::int64_t> query = whole(*number);
+  std::optional<Place> on_a_line(Place out) {
+    if (is_called("on")) return enable_bit(std::move(out));
+    if (is_called("value")) return value(std::move(out));
+    if (!node_.has("query") || node_.has("heartbeat")) return refuse(kPlaceOnALine);
+    const std::optional<std::int64_t> query = node_["query"].whole();
     if (!query || *query < 0 || *query > kLastQuery)
-      return refuse("a query has a number from 0 to " + std::to_string(kLastQuery));
-    if (member(node, "byte") == nullptr) return refuse("give the \"byte\" of the answer with which the value begins");
+      return refuse(fmt::format("a query has a number from 0 to {}", kLastQuery));
+    if (!node_.has("byte")) return refuse("give the \"byte\" of the answer with which the value begins");
     return in_query(std::move(out), static_cast<std::uint16_t>(kQuery + *query), 0);
   }
 
@@ -101,7 +98,7 @@ class PlaceInFrame {
   std::optional<Place> in_heartbeat(std::int64_t byte, Place out) {
     if (object_.writable) return refuse("is sent by the drive: \"access\" can only be ro");
     const auto here = [&](const auto& field) { return field.first == byte && field.second == type_.size; };
-    if (std::none_of(kHeartbeatFields.begin(), kHeartbeatFields.end(), here))
+    if (std::ranges::none_of(kHeartbeatFields, here))
       return refuse("a heartbeat holds two bytes each from bytes 0, 2 and 4 on, and one at 6 and at 7");
     out.address = {kHeartbeat, 0, static_cast<std::uint8_t>(byte)};
     out.unsolicited = true;
@@ -131,8 +128,7 @@ class PlaceInFrame {
   std::optional<Place> command(Place out, std::uint16_t index, std::uint8_t sub) {
     if (!object_.writable) return refuse("is a command: \"access\" must be wo or rw");
     if (object_.slot != kNoAxis && object_.slot + 1 != sub)
-      return refuse("is motor " + std::to_string(sub) + "'s place, and object \"" + object_.name +
-                    "\" belongs to another");
+      return refuse(fmt::format("is motor {}'s place, and object \"{}\" belongs to another", sub, object_.name));
     out.address = {index, sub, 0};
     out.write_only = true;
     return out;
@@ -141,7 +137,7 @@ class PlaceInFrame {
   Reading& reading_;
   const Layout& layout_;
   const Object& object_;
-  std::string pointer_;
+  const JsonNode& node_;
   DataType type_;
   std::int64_t byte_ = 0;
 };
@@ -149,26 +145,24 @@ class PlaceInFrame {
 }  // namespace
 
 bool is_keya(std::string_view protocol) {
-  return std::any_of(kLayouts.begin(), kLayouts.end(), [&](const Layout& l) { return l.protocol == protocol; });
+  return std::ranges::find(kLayouts, protocol, &Layout::protocol) != kLayouts.end();
 }
 
-std::optional<Place> place_in_frame(Reading& reading, std::string_view protocol, const Object& object, const json& node,
-                                    const std::string& pointer, Place place) {
-  return PlaceInFrame(reading, protocol, object, pointer).read(node, std::move(place));
+std::optional<Place> place_in_frame(Reading& reading, const Object& object, const JsonNode& node, Place place) {
+  return PlaceInFrame(reading, object, node).read(std::move(place));
 }
 
 /// The control frame is written whole: what nobody can say of a motor would be sent as 0.
 void check_control_frame(Reading& reading, const std::string& protocol, const std::string& pointer) {
   std::vector<ObjectAddress> fields;
   for (const Object& object : reading.profile.objects)
-    if (const auto place = object.places.find(protocol); place != object.places.end() && place->second.composed)
-      fields.push_back(place->second.address);
+    if (const Place* place = object.place(protocol); place != nullptr && place->composed)
+      fields.push_back(place->address);
   if (fields.empty()) return;
   for (const auto& [index, what] : {std::pair(kOn, "enable bit"), std::pair(kValue, "value")})
     for (std::uint8_t motor = 1; motor <= kMotors; ++motor)
-      if (std::find(fields.begin(), fields.end(), ObjectAddress{index, motor, 0}) == fields.end())
-        reading.fault(pointer, "no object is the " + std::string(what) + " of motor " + std::to_string(motor) +
-                                   " in the control frame");
+      if (std::ranges::find(fields, ObjectAddress{index, motor, 0}) == fields.end())
+        reading.fault(pointer, "no object is the {} of motor {} in the control frame", what, motor);
 }
 
 }  // namespace axisgate::profile

@@ -30,6 +30,11 @@ std::size_t end_of(const std::string& place, const std::string& parent) {
   return place.size() == parent.size() || place[parent.size()] == '/' ? parent.size() : std::string::npos;
 }
 
+/// The member, or null.
+const json* member(const json& node, std::string_view key) {
+  return node.is_object() && node.contains(key) ? &*node.find(key) : nullptr;
+}
+
 /// Everything at and under `pointer`.
 void forget(WrittenPlaces& places, const std::string& pointer) {
   for (auto at = places.lower_bound(pointer); at != places.end() && at->first.starts_with(pointer);)
@@ -126,27 +131,27 @@ class Composer {
   }
 
   std::optional<Layer> base_of(const Layer& own, const std::string& file) {
-    const json* extends = member(own.document, "extends");
-    if (extends == nullptr) return std::nullopt;
+    const JsonNode extends = JsonNode(own.document, "")["extends"];
+    if (!extends) return std::nullopt;
     const auto refuse = [&](std::string why) {
       out_.faults.push_back({file, "/extends", std::move(why)});
       return std::nullopt;
     };
-    const std::string name = extends->is_string() ? extends->get<std::string>() : std::string();
+    const std::string name = extends.text();
     if (name.empty() || name.find('/') != std::string::npos || name.ends_with(".json"))
       return refuse("must be the name of another profile, as \"kinco-jd\": without a folder and without \".json\"");
     const std::optional<std::string> base = find_base(file, name);
     if (!base)
-      return refuse("there is no other " + name + ".json beside this file" +
-                    (folders_.empty() ? "" : " or in " + listed(folders_)));
+      return refuse(fmt::format("there is no other {}.json beside this file{}{}", name,
+                                folders_.empty() ? "" : " or in ", listed(folders_)));
     std::error_code error;
     const auto same = [&](const std::string& known) { return fs::equivalent(known, *base, error); };
     if (std::any_of(out_.files.begin(), out_.files.end(), same))
-      return refuse("\"" + name +
-                    "\" extends this profile itself, directly or by others: one of them must stand alone");
+      return refuse(
+          fmt::format("\"{}\" extends this profile itself, directly or by others: one of them must stand alone", name));
     if (out_.files.size() > kMaxBases)
-      return refuse("\"" + name + "\" would be base number " + std::to_string(out_.files.size()) + ", and at most " +
-                    std::to_string(kMaxBases) + " may stand behind one another");
+      return refuse(fmt::format("\"{}\" would be base number {}, and at most {} may stand behind one another", name,
+                                out_.files.size(), kMaxBases));
     return compose(*base);
   }
 
@@ -165,8 +170,8 @@ class Composer {
   }
 
   static std::vector<std::string> axes_of(const Layer& own, const std::optional<Layer>& base) {
-    std::vector<std::string> axes = names_in(own.document, "axes");
-    if (axes.empty() && base) axes = names_in(base->document, "axes");
+    std::vector<std::string> axes = JsonNode(own.document, "").names("axes");
+    if (axes.empty() && base) axes = JsonNode(base->document, "").names("axes");
     if (axes.empty()) axes = {"A"};
     return axes;
   }

@@ -24,17 +24,17 @@ const json& profile_schema() {
 
 void read_head(Reading& reading, const std::string& file) {
   Profile& out = reading.profile;
-  out.name = text_in(reading.document, "name");
-  out.title = text_in(reading.document, "title");
-  out.nvm = nvm_named(text_in(reading.document, "nvm"));
-  out.axes = names_in(reading.document, "axes");
+  out.name = reading.document.text("name");
+  out.title = reading.document.text("title");
+  out.nvm = nvm_named(reading.document.text("nvm"));
+  out.axes = reading.document.names("axes");
   if (out.axes.empty()) out.axes = {"A"};
   if (std::set<std::string>(out.axes.begin(), out.axes.end()).size() != out.axes.size())
     reading.fault("/axes", "an axis is named twice");
   const std::string stem = std::filesystem::path(file).stem().string();
   // Configurations find a profile by its file's name, logs and maps show its own: they must be one.
   if (!out.name.empty() && out.name != stem)
-    reading.fault("/name", "is \"" + out.name + "\", but the file is called \"" + stem + ".json\"");
+    reading.fault("/name", "is \"{}\", but the file is called \"{}.json\"", out.name, stem);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
   if (!out.faults.empty()) return out;
   const json& document = *layered.document;
   out.text = document.dump();
-  out.base_only = flag_in(document, "base_only", false);
+  out.base_only = JsonNode(document, "").flag("base_only", false);
   if (out.base_only) {
     out.faults.push_back({path, "/base_only", "is no drive but a base: name or check a profile that extends it"});
     return out;

@@ -2,7 +2,6 @@
 // What no section may do by itself: enable or turn a motor that nobody has commanded.
 #include <algorithm>
 #include <array>
-#include <functional>
 
 #include "gateway/model/cia402.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
@@ -22,12 +21,8 @@ bool may_move(Command command) {
 /// Nor does set_position, although the axis holds torque in it.
 bool moves_nothing(Command command) { return !may_move(command) || command == Command::set_position; }
 
-template <class Check>
-void each_step(const CommandSpec& command, Check&& check) {
-  for (const StepSpec& step : command.steps) check(step);
-  for (const CommandSpec::Variant& variant : command.variants)
-    for (const StepSpec& step : variant.steps) check(step);
-}
+/// The number that is written; null: it is none, or not known beforehand.
+const std::int64_t* number_in(const ValueSpec& value) { return std::get_if<std::int64_t>(&value); }
 
 bool share_an_object(const Reading& reading, const std::string& left, const std::string& right) {
   bool found = false;
@@ -46,55 +41,55 @@ std::vector<std::string> moving_objects(const Reading& reading) {
       out.insert(out.end(), spec->objects.begin(), spec->objects.end());
   for (const CommandSpec& command : profile.commands)
     if (may_move(command.command))
-      each_step(command, [&](const StepSpec& step) {
-        if (step.verb == model::Step::Verb::write && !is_of(reading, step.object, Quantity::controlword))
-          out.push_back(step.object);
+      each_write(command, [&](const StepSpec& step) {
+        if (!is_of(reading, step.object, Quantity::controlword)) out.push_back(step.object);
       });
   return out;
 }
 
 bool may_enable(const ValueSpec& value) {
-  const auto* number = std::get_if<std::int64_t>(&value);
+  const auto* number = number_in(value);
   return number == nullptr || model::enables(*number);
 }
 
 bool is_not_zero(const ValueSpec& value) {
-  if (const auto* number = std::get_if<std::int64_t>(&value)) return *number != 0;
+  if (const auto* number = number_in(value)) return *number != 0;
   const auto* amount = std::get_if<model::Amount>(&value);
   return amount != nullptr && amount->number != model::Factor(Rational(0));
 }
 
 void check_write(Reading& reading, const std::vector<std::string>& moving, const WriteSpec& write) {
   if (is_of(reading, write.object, Quantity::controlword)) {
-    if (std::any_of(write.values.begin(), write.values.end(), may_enable))
+    if (std::ranges::any_of(write.values, may_enable))
       reading.fault(pointer_to(write.pointer, "value"),
                     "would enable the motor, and only a command may: bits 0 to 3 of the controlword must not all be 1");
     return;
   }
-  if (std::any_of(moving.begin(), moving.end(),
-                  [&](const std::string& name) { return share_an_object(reading, write.object, name); }))
+  if (std::ranges::any_of(moving,
+                          [&](const std::string& name) { return share_an_object(reading, write.object, name); }))
     reading.fault(pointer_to(write.pointer, "write"),
-                  "object \"" + write.object + "\" may enable or move the motor: only a command may write it");
+                  "object \"{}\" may enable or move the motor: only a command may write it", write.object);
 }
 
 }  // namespace
 
 bool is_of(const Reading& reading, const std::string& object, Quantity quantity) {
   const QuantitySpec* spec = reading.profile.find(quantity);
-  return spec != nullptr && std::any_of(spec->objects.begin(), spec->objects.end(),
-                                        [&](const std::string& own) { return share_an_object(reading, object, own); });
+  return spec != nullptr && std::ranges::any_of(spec->objects, [&](const std::string& own) {
+           return share_an_object(reading, object, own);
+         });
 }
 
 void check_never_enables(Reading& reading, const CommandSpec& command) {
   if (may_move(command.command)) return;
-  each_step(command, [&](const StepSpec& step) {
-    if (step.verb != model::Step::Verb::write || !is_of(reading, step.object, Quantity::controlword)) return;
+  each_write(command, [&](const StepSpec& step) {
+    if (!is_of(reading, step.object, Quantity::controlword)) return;
     const auto wrong = [&](const ValueSpec& value) {
-      const auto* number = std::get_if<std::int64_t>(&value);
+      const auto* number = number_in(value);
       const bool halts = number != nullptr && (*number & model::controlword::kHalt) != 0;
       return may_enable(value) && !(command.command == Command::halt && halts);
     };
-    if (std::any_of(step.values.begin(), step.values.end(), wrong))
+    if (std::ranges::any_of(step.values, wrong))
       reading.fault(pointer_to(step.pointer, "value"),
                     command.command == Command::halt
                         ? "lets the motor run: bits 0 to 3 of the controlword must not all be 1 without bit 8, halt"
@@ -106,25 +101,21 @@ void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
   if (command.command != Command::enable) return;
   const std::uint32_t starts =
       model::controlword::kStart | reading.profile.state.follow_bits.value_or(model::controlword::kMaker);
-  const auto any = [](const StepSpec& step, auto&& wrong) {
-    return std::any_of(step.values.begin(), step.values.end(), wrong);
-  };
   const auto begins = [&](const ValueSpec& value) {
-    const auto* number = std::get_if<std::int64_t>(&value);
+    const auto* number = number_in(value);
     const bool fits = number != nullptr && *number >= 0 && *number <= UINT16_MAX;  // else it is told already
     return number == nullptr || (fits && (*number & starts) != 0);
   };
   const auto is_zero = [](const ValueSpec& value) {
-    const auto* number = std::get_if<std::int64_t>(&value);
+    const auto* number = number_in(value);
     return number != nullptr && *number == 0;
   };
   const auto is_here = [](const ValueSpec& value) {
     const auto* quantity = std::get_if<Quantity>(&value);
     return quantity != nullptr && *quantity == Quantity::position_actual;
   };
-  each_step(command, [&](const StepSpec& step) {
-    if (step.verb != model::Step::Verb::write) return;
-    if (is_of(reading, step.object, Quantity::controlword) && any(step, begins))
+  each_write(command, [&](const StepSpec& step) {
+    if (is_of(reading, step.object, Quantity::controlword) && std::ranges::any_of(step.values, begins))
       reading.fault(pointer_to(step.pointer, "value"),
                     "an enable never moves the axis: bit 4 of the controlword and those of follow_bits must be 0");
     if (is_of(reading, step.object, Quantity::mode) && !reading.profile.state.is_virtual)
@@ -134,7 +125,8 @@ void check_enable_starts_nothing(Reading& reading, const CommandSpec& command) {
     const bool rate =
         is_of(reading, step.object, Quantity::target_velocity) || is_of(reading, step.object, Quantity::target_torque);
     // Where one object is both, the mode tells which.
-    const bool stays = (position && !any(step, std::not_fn(is_here))) || (rate && !any(step, std::not_fn(is_zero)));
+    const bool stays =
+        (position && std::ranges::all_of(step.values, is_here)) || (rate && std::ranges::all_of(step.values, is_zero));
     if ((position || rate) && !stays)
       reading.fault(pointer_to(step.pointer, "value"),
                     "an enable never moves the axis: a position target takes position_actual in it, any other one 0");
@@ -146,26 +138,25 @@ void check_stops_by_word(Reading& reading, const CommandSpec& command, const std
   const bool by_word = command.command == Command::quick_stop || command.command == Command::disable;
   if (!by_word || reading.profile.state.is_virtual) return;
   const auto stops = [](const ValueSpec& value) {
-    const auto* number = std::get_if<std::int64_t>(&value);
+    const auto* number = number_in(value);
     return number != nullptr && is_stop(static_cast<std::uint16_t>(*number), true);
   };
   const auto is_stopping = [&](const StepSpec& step) {
     return step.verb == model::Step::Verb::write && is_of(reading, step.object, Quantity::controlword) &&
-           std::all_of(step.values.begin(), step.values.end(), stops);
+           std::ranges::all_of(step.values, stops);
   };
-  if (std::none_of(steps.begin(), steps.end(), is_stopping))
+  if (std::ranges::none_of(steps, is_stopping))
     reading.fault(pointer, "write no controlword that stops: bit 1 or bit 2 must be 0, or bits 0 to 3 be 6 or 7");
 }
 
 void check_turns_nothing(Reading& reading, const CommandSpec& command) {
   if (may_move(command.command)) return;
-  each_step(command, [&](const StepSpec& step) {
-    if (step.verb != model::Step::Verb::write || std::none_of(step.values.begin(), step.values.end(), is_not_zero))
-      return;
+  each_write(command, [&](const StepSpec& step) {
+    if (std::ranges::none_of(step.values, is_not_zero)) return;
     for (const Quantity target : {Quantity::target_velocity, Quantity::target_torque})
       if (is_of(reading, step.object, target))
-        reading.fault(pointer_to(step.pointer, "value"),
-                      "would turn the motor: " + std::string(row(target).name) + " must be 0 in this command");
+        reading.fault(pointer_to(step.pointer, "value"), "would turn the motor: {} must be 0 in this command",
+                      row(target).name);
   });
 }
 
@@ -176,30 +167,28 @@ void check_stops_start_nothing(Reading& reading) {
   const auto writes_it = [&](const CommandSpec& command, const std::string& object, std::int64_t number) {
     bool found = false;
     const auto is_it = [number](const ValueSpec& value) {
-      const auto* its = std::get_if<std::int64_t>(&value);
+      const auto* its = number_in(value);
       return its != nullptr && *its == number;
     };
-    each_step(command, [&](const StepSpec& step) {
-      found = found || (step.verb == model::Step::Verb::write && share_an_object(reading, object, step.object) &&
-                        std::any_of(step.values.begin(), step.values.end(), is_it));
+    each_write(command, [&](const StepSpec& step) {
+      found = found || (share_an_object(reading, object, step.object) && std::ranges::any_of(step.values, is_it));
     });
     return found;
   };
   const auto check = [&](const StepSpec& step) {
-    if (step.verb != model::Step::Verb::write) return;
     for (const ValueSpec& value : step.values) {
-      const auto* number = std::get_if<std::int64_t>(&value);
+      const auto* number = number_in(value);
       if (number == nullptr || *number == 0) continue;
-      const auto mover = std::find_if(commands.begin(), commands.end(), [&](const CommandSpec& command) {
+      const auto mover = std::ranges::find_if(commands, [&](const CommandSpec& command) {
         return !moves_nothing(command.command) && writes_it(command, step.object, *number);
       });
       if (mover != commands.end())
         reading.fault(pointer_to(step.pointer, "value"),
-                      "is what enables or moves the motor in " + mover->pointer + ": give the one that does not");
+                      "is what enables or moves the motor in {}: give the one that does not", mover->pointer);
     }
   };
   for (const CommandSpec& command : commands)
-    if (moves_nothing(command.command)) each_step(command, check);
+    if (moves_nothing(command.command)) each_write(command, check);
 }
 
 void check_unsolicited_writes(Reading& reading) {

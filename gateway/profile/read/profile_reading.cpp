@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/profile/read/profile_reading.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <charconv>
-#include <nlohmann/json.hpp>
 
 namespace axisgate::profile {
-
-using nlohmann::json;
 
 void Reading::fault(const std::string& pointer, std::string message) {
   const auto covers = [&](const SchemaFault& known) {
@@ -25,65 +23,79 @@ bool Reading::names_object(const std::string& object, const std::string& pointer
     if (profile.find(object, static_cast<AxisSlot>(slot)) != nullptr) continue;
     std::vector<std::string> known;
     for (const Object& candidate : profile.objects) known.push_back(candidate.name);
-    const bool some =
-        std::any_of(known.begin(), known.end(), [&](const std::string& name) { return name.ends_with("." + object); });
-    fault(pointer, some ? "there is no object \"" + profile.axes[slot] + "." + object + "\", but one for another axis"
-                        : "unknown object \"" + object + "\": not under /objects" + did_you_mean(object, known));
+    if (std::ranges::any_of(known, [&](const std::string& name) { return name.ends_with("." + object); }))
+      fault(pointer, "there is no object \"{}.{}\", but one for another axis", profile.axes[slot], object);
+    else
+      fault(pointer, "unknown object \"{}\": not under /objects{}", object, did_you_mean(object, known));
     return false;
   }
   return true;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+bool Reading::names_protocol(const std::string& protocol, const std::string& pointer) {
+  if (profile.protocols.contains(protocol)) return true;
+  fault(pointer, "protocol \"{}\" is not under /protocols{}", protocol,
+        did_you_mean(protocol, keys_in(profile.protocols)));
+  return false;
+}
+
+bool Reading::names_unit(const std::string& unit, const std::string& pointer) {
+  if (profile.units.contains(unit)) return true;
+  fault(pointer, "unknown unit \"{}\": not under /units{}", unit, did_you_mean(unit, keys_in(profile.units)));
+  return false;
+}
+
+bool Reading::names_mode(std::int64_t mode, const std::string& pointer) {
+  if (profile.modes.contains(static_cast<std::int16_t>(mode))) return true;
+  fault(pointer, "mode {} is not under /modes", mode);
+  return false;
+}
+
+const Constant* Reading::constant_named(const std::string& name, const std::string& pointer) {
+  const auto at = profile.constants.find(name);
+  if (at != profile.constants.end()) return &at->second;
+  fault(pointer, "unknown constant \"{}\": not under /constants{}", name,
+        did_you_mean(name, keys_in(profile.constants)));
+  return nullptr;
+}
+
+bool Reading::needs_readable(const Object& object, const std::string& pointer, std::string_view else_told) {
+  if (!object.readable) fault(pointer, "object \"{}\" cannot be read{}", object.name, else_told);
+  return object.readable;
+}
+
+bool Reading::needs_writable(const Object& object, const std::string& pointer) {
+  if (!object.writable) fault(pointer, "object \"{}\" is read-only", object.name);
+  return object.writable;
+}
+
+bool Reading::needs_address(const Object& object, std::string_view protocol, const std::string& pointer) {
+  if (object.place(protocol) != nullptr) return true;
+  fault(pointer, "object \"{}\" has no address on {}", object.name, protocol);
+  return false;
+}
+
+bool Reading::needs_number(const Object& object, std::int64_t number, const std::string& pointer) {
+  if (object.numbers().holds(number)) return true;
+  fault(pointer, "{} does not fit object \"{}\": it takes {}", number, object.name, range_text(object.numbers()));
+  return false;
+}
+
+std::string listed(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+std::vector<std::int64_t> numbers_in(const JsonNode& list) {
+  std::vector<std::int64_t> out;
+  for (const JsonNode& entry : list.elements())
+    if (const std::optional<std::int64_t> number = entry.whole()) out.push_back(*number);
   return out;
 }
 
-const json* member(const json& node, std::string_view key) {
-  if (!node.is_object()) return nullptr;
-  const auto at = node.find(key);
-  return at == node.end() ? nullptr : &*at;
-}
-
-std::string text_in(const json& node, std::string_view key) {
-  const json* found = member(node, key);
-  return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-bool flag_in(const json& node, std::string_view key, bool otherwise) {
-  const json* found = member(node, key);
-  return found != nullptr && found->is_boolean() ? found->get<bool>() : otherwise;
-}
-
-std::optional<std::int64_t> whole(const json& node) {
-  if (node.is_number_unsigned() && node.get<std::uint64_t>() > INT64_MAX) return std::nullopt;
-  if (node.is_number_integer()) return node.get<std::int64_t>();
-  if (!node.is_string()) return std::nullopt;
-  std::string_view text = node.get_ref<const std::string&>();
-  const bool negative = text.starts_with('-');
-  if (negative) text.remove_prefix(1);
-  const bool hex = text.starts_with("0x");
-  if (hex) text.remove_prefix(2);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
-  if (error != std::errc{} || end != text.data() + text.size() || value < 0) return std::nullopt;
-  return negative ? -value : value;
-}
-
-std::int64_t whole_in(const json& node, std::string_view key, std::int64_t otherwise) {
-  const json* found = member(node, key);
-  return found == nullptr ? otherwise : whole(*found).value_or(otherwise);
-}
-
-std::vector<std::string> names_in(const json& node, std::string_view key) {
+std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& node, std::string_view what) {
   std::vector<std::string> out;
-  const json* found = member(node, key);
-  if (found == nullptr) return out;
-  if (found->is_string()) return {found->get<std::string>()};
-  if (found->is_array())
-    for (const json& name : *found)
-      if (name.is_string()) out.push_back(name);
+  for (const std::string& axis : reading.profile.axes) {
+    out.push_back(node.text(axis));
+    if (out.back().empty()) reading.fault(node.pointer(), "a {} for axis \"{}\" is missing", what, axis);
+  }
   return out;
 }
 
@@ -107,9 +119,9 @@ bool waits_for_drive(const Profile& profile, const model::Unit& unit) {
     const auto constant = name == nullptr ? profile.constants.end() : profile.constants.find(*name);
     return constant != profile.constants.end() && constant->second.from_drive;
   };
-  return std::any_of(unit.mul.begin(), unit.mul.end(), waits) || std::any_of(unit.div.begin(), unit.div.end(), waits);
+  return std::ranges::any_of(unit.mul, waits) || std::ranges::any_of(unit.div, waits);
 }
 
-std::string range_text(const Range& range) { return std::to_string(range.min) + " to " + std::to_string(range.max); }
+std::string range_text(const Range& range) { return fmt::format("{} to {}", range.min, range.max); }
 
 }  // namespace axisgate::profile

@@ -4,13 +4,15 @@
 // reports what the JSON Schema reports already: a value of the wrong type simply reads as absent.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "gateway/core/nearest.hpp"
+#include "gateway/profile/json/json_node.hpp"
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/read/profile.hpp"
 
@@ -22,17 +24,36 @@ inline constexpr std::int64_t kLastRegister = 0xFFFF;
 class Reading {
  public:
   Reading(const nlohmann::json& file, Profile& filled, std::vector<SchemaFault>& faults)
-      : document(file), profile(filled), faults_(faults), from_schema_(faults.size()) {}
+      : document(file, ""), profile(filled), faults_(faults), from_schema_(faults.size()) {}
 
-  const nlohmann::json& document;
+  const JsonNode document;
   Profile& profile;
 
   /// Dropped where the schema has found fault with the same place.
   void fault(const std::string& pointer, std::string message);
+  template <class First, class... More>
+  void fault(const std::string& pointer, fmt::format_string<First, More...> form, First&& first, More&&... more) {
+    fault(pointer, fmt::format(form, std::forward<First>(first), std::forward<More>(more)...));
+  }
   /// The axis slots that a name without a prefix is looked up for.
   [[nodiscard]] std::size_t axes() const { return profile.axes.size(); }
-  /// Says what is wrong with `object` for any axis, unless it names one. Returns whether it does.
+
+  // Each says what is wrong at `pointer`, unless what is named there is known. Returns whether it is.
+  /// Of any axis.
   bool names_object(const std::string& object, const std::string& pointer);
+  bool names_protocol(const std::string& protocol, const std::string& pointer);
+  bool names_unit(const std::string& unit, const std::string& pointer);
+  bool names_mode(std::int64_t mode, const std::string& pointer);
+  /// Null: there is none.
+  const Constant* constant_named(const std::string& name, const std::string& pointer);
+
+  // Each says what is wrong at `pointer` with an object that is not so. Returns whether it is.
+  /// `else_told`: what follows from it, behind "cannot be read".
+  bool needs_readable(const Object& object, const std::string& pointer, std::string_view else_told = "");
+  bool needs_writable(const Object& object, const std::string& pointer);
+  bool needs_address(const Object& object, std::string_view protocol, const std::string& pointer);
+  bool needs_number(const Object& object, std::int64_t number, const std::string& pointer);
+
   /// Calls `check(object)` for what the name means on each axis (once, where all mean the same).
   template <class Check>
   void each_meaning(const std::string& name, Check&& check) const {
@@ -43,31 +64,38 @@ class Reading {
       last = object;
     }
   }
+  /// The same, where every axis has an object of this name.
+  template <class Check>
+  void each_named(const std::string& name, const std::string& pointer, Check&& check) {
+    if (names_object(name, pointer)) each_meaning(name, check);
+  }
+  /// The same for all objects of a quantity.
+  template <class Check>
+  void each_object_of(Quantity quantity, Check&& check) const {
+    if (const QuantitySpec* spec = profile.find(quantity))
+      for (const std::string& name : spec->objects) each_meaning(name, check);
+  }
   /// Readers of a value, shared by commands, setup and remedies.
-  [[nodiscard]] std::vector<ValueSpec> values(const nlohmann::json& node, const std::string& pointer);
+  [[nodiscard]] std::vector<ValueSpec> values(const JsonNode& node);
   void value_fits(const ValueSpec& value, const Object& object, const std::string& pointer);
   /// For what is written without a further look: not an amount in a unit that waits for the drive.
   void value_known(const ValueSpec& value, const Object& object, const std::string& pointer);
-  [[nodiscard]] ConditionSpec condition(const nlohmann::json& node, const std::string& object,
-                                        const std::string& pointer);
+  [[nodiscard]] ConditionSpec condition(const JsonNode& node, const std::string& object);
   /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
-  [[nodiscard]] std::optional<model::Amount> amount(const nlohmann::json& node, const std::string& pointer);
+  [[nodiscard]] std::optional<model::Amount> amount(const JsonNode& node);
 
  private:
-  void by_constant(const nlohmann::json& node, std::int64_t mask, const std::string& pointer, ConditionSpec& out);
+  void by_constant(const JsonNode& node, std::int64_t mask, ConditionSpec& out);
   std::vector<SchemaFault>& faults_;
   std::size_t from_schema_;
 };
 
-/// The member, or null.
-[[nodiscard]] const nlohmann::json* member(const nlohmann::json& node, std::string_view key);
-[[nodiscard]] std::string text_in(const nlohmann::json& node, std::string_view key);
-[[nodiscard]] bool flag_in(const nlohmann::json& node, std::string_view key, bool otherwise);
-/// 47, "47", "0x2F".
-[[nodiscard]] std::optional<std::int64_t> whole(const nlohmann::json& node);
-[[nodiscard]] std::int64_t whole_in(const nlohmann::json& node, std::string_view key, std::int64_t otherwise);
 [[nodiscard]] inline Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
-[[nodiscard]] std::vector<std::string> names_in(const nlohmann::json& node, std::string_view key);
+/// The whole numbers of a list.
+[[nodiscard]] std::vector<std::int64_t> numbers_in(const JsonNode& list);
+/// One text for each axis, from {"A": ..., "B": ...}; `what` of an axis that has none is told to be missing.
+[[nodiscard]] std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& node,
+                                                          std::string_view what);
 [[nodiscard]] std::optional<DataType> type_named(std::string_view name);
 [[nodiscard]] model::Nvm nvm_named(std::string_view name);
 /// The unit counts by a constant that is read from the drive: nothing can be converted by it before that.
@@ -100,13 +128,13 @@ void read_checks(Reading& reading);
 void read_alarms(Reading& reading);
 void read_keepalive(Reading& reading);
 /// Of section "protocols": what belongs to canopen alone.
-void read_canopen(Reading& reading, const nlohmann::json& node, const std::string& pointer, CanopenSpec& out);
-void check_canopen(Reading& reading, const ProtocolSpec& protocol, const std::string& pointer);
+void read_canopen(Reading& reading, const JsonNode& node, CanopenSpec& out);
+void check_canopen(Reading& reading, const ProtocolSpec& protocol, const JsonNode& node);
 /// Of sections "protocols" and "objects": what belongs to Keya's own protocols alone.
 [[nodiscard]] bool is_keya(std::string_view protocol);
 /// `place` has what every protocol's places have; none where it is wrong.
-[[nodiscard]] std::optional<Place> place_in_frame(Reading& reading, std::string_view protocol, const Object& object,
-                                                  const nlohmann::json& node, const std::string& pointer, Place place);
+[[nodiscard]] std::optional<Place> place_in_frame(Reading& reading, const Object& object, const JsonNode& node,
+                                                  Place place);
 void check_control_frame(Reading& reading, const std::string& protocol, const std::string& pointer);
 /// After all: what a section can only be judged by together with others.
 void check_protocols(Reading& reading);
@@ -118,6 +146,19 @@ void check_state_places(Reading& reading);
 [[nodiscard]] bool are_aliases(const Object& a, const Object& b);
 /// `object` is, on any axis, one of those that the quantity comes from.
 [[nodiscard]] bool is_of(const Reading& reading, const std::string& object, Quantity quantity);
+/// Calls `check(step)` for the steps of a command, whatever the mode.
+template <class Check>
+void each_step(const CommandSpec& command, Check&& check) {
+  for (const StepSpec& step : command.steps) check(step);
+  for (const CommandSpec::Variant& variant : command.variants)
+    for (const StepSpec& step : variant.steps) check(step);
+}
+template <class Check>
+void each_write(const CommandSpec& command, Check&& check) {
+  each_step(command, [&](const StepSpec& step) {
+    if (step.verb == model::Step::Verb::write) check(step);
+  });
+}
 /// A stop, a fault reset and a save must not enable, a halt must not go on.
 void check_never_enables(Reading& reading, const CommandSpec& command);
 /// An enable has no start in it, no mode and no target but to stay where it is.
@@ -133,6 +174,6 @@ void check_unsolicited_writes(Reading& reading);
 void check_stops_start_nothing(Reading& reading);
 
 /// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
-[[nodiscard]] WriteSpec read_write(Reading& reading, const nlohmann::json& node, const std::string& pointer);
+[[nodiscard]] WriteSpec read_write(Reading& reading, const JsonNode& node);
 
 }  // namespace axisgate::profile

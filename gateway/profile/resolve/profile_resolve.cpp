@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // resolve(): what this version can do, constants, objects, and how names, values and units become the model's.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -14,10 +16,8 @@ namespace {
 void check_protocol(Resolving& r) {
   const std::string& protocol = r.input.protocol;
   if (r.profile.protocols.contains(protocol)) return;
-  std::vector<std::string> known;
-  for (const auto& [name, spec] : r.profile.protocols) known.push_back(name);
-  r.fault("/profile",
-          "profile \"" + r.profile.name + "\" has no protocol \"" + protocol + "\": it has " + listed(known));
+  r.fault("/profile", fmt::format("profile \"{}\" has no protocol \"{}\": it has {}", r.profile.name, protocol,
+                                  listed(keys_in(r.profile.protocols))));
 }
 
 /// A constant that decides a mode tells why there are no more of them.
@@ -107,8 +107,7 @@ std::optional<model::DriveConstant::Operand> Resolving::operand(const model::Fac
 /// Position in the model, where it is put at its first need. None where it is not read from the drive, or a rule needs
 /// what is not there: a rule left out could make another one true.
 std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
-  const auto named = [&](const model::DriveConstant& constant) { return constant.name == name; };
-  const auto at = std::find_if(model.constants.begin(), model.constants.end(), named);
+  const auto at = std::ranges::find(model.constants, name, &model::DriveConstant::name);
   if (at != model.constants.end()) return static_cast<std::size_t>(at - model.constants.begin());
   model::DriveConstant out;
   out.name = name;
@@ -148,8 +147,7 @@ std::optional<model::ScaleRecipe> Resolving::recipe(const model::Unit& unit) {
     return at.has_value();
   };
   const auto all = [&](const std::vector<model::Factor>& factors, bool divides) {
-    return std::all_of(factors.begin(), factors.end(),
-                       [&](const model::Factor& factor) { return add(factor, divides); });
+    return std::ranges::all_of(factors, [&](const model::Factor& factor) { return add(factor, divides); });
   };
   if (!all(unit.mul, false) || !all(unit.div, true)) return std::nullopt;  // a constant nobody gave
   return out;
@@ -165,22 +163,20 @@ std::vector<std::string> Resolving::missing(const model::Unit& unit) {
 }
 
 void resolve_constants(Resolving& r) {
-  std::vector<std::string> known;
+  const std::vector<std::string> known = keys_in(r.profile.constants);
   for (const auto& [name, constant] : r.profile.constants) {
-    known.push_back(name);
     if (constant.standard) r.constants.emplace(name, *constant.standard);
     if (constant.required && !r.input.constants.contains(name))
       r.fault(pointer_to("/constants", name),
-              "\"" + name + "\" is required for profile \"" + r.profile.name + "\": " + constant.text);
+              fmt::format("\"{}\" is required for profile \"{}\": {}", name, r.profile.name, constant.text));
   }
   for (const auto& [name, value] : r.input.constants) {
     const std::string pointer = pointer_to("/constants", name);
     const auto at = r.profile.constants.find(name);
     if (at == r.profile.constants.end()) {
-      const std::optional<std::string> near = nearest(name, known);
-      r.fault(pointer, "profile \"" + r.profile.name + "\" has no constant \"" + name + "\"" +
-                           (near ? "; did you mean \"" + *near + "\"?"
-                                 : ": it has " + (known.empty() ? "none" : listed(known))));
+      std::string instead = did_you_mean(name, known);
+      if (instead.empty()) instead = ": it has " + (known.empty() ? "none" : listed(known));
+      r.fault(pointer, fmt::format("profile \"{}\" has no constant \"{}\"{}", r.profile.name, name, instead));
       continue;
     }
     const Constant& constant = at->second;
@@ -191,17 +187,17 @@ void resolve_constants(Resolving& r) {
     };
     if (constant.min && constant.max &&
         (value.to_double() < constant.min->to_double() || value.to_double() > constant.max->to_double()))
-      r.fault(pointer, "must be " + decimal(*constant.min) + " to " + decimal(*constant.max) + ", is " +
-                           decimal(value) + why_no_more(r.profile, name, constant));
+      r.fault(pointer, fmt::format("must be {} to {}, is {}{}", decimal(*constant.min), decimal(*constant.max),
+                                   decimal(value), why_no_more(r.profile, name, constant)));
     r.constants.insert_or_assign(name, value);
   }
 }
 
 void resolve_objects(Resolving& r) {
   for (const Object& object : r.profile.objects) {
-    const auto place = object.places.find(r.input.protocol);
-    if (place == object.places.end()) continue;
-    const Place& at = place->second;
+    const Place* place = object.place(r.input.protocol);
+    if (place == nullptr) continue;
+    const Place& at = *place;
     const AxisSlot axis = object.slot == kNoAxis ? kNoAxis : r.axis_of(object.slot);
     // Of a motor that is no axis only what travels with the others' is needed.
     if (object.slot != kNoAxis && axis == kNoAxis && !at.composed) continue;
@@ -229,15 +225,14 @@ void resolve_objects(Resolving& r) {
 std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded, const ResolveInput& input) {
   Resolving r(loaded.profile, input);
   if (!loaded.faults.empty()) {
-    r.fault("/profile", "profile \"" + loaded.file + "\" has mistakes of its own");
+    r.fault("/profile", fmt::format("profile \"{}\" has mistakes of its own", loaded.file));
     return r.faults;
   }
   check_protocol(r);
   resolve_constants(r);
   if (input.axes.empty() || input.axes.size() > loaded.profile.axes.size())
-    r.fault("/axes", "profile \"" + loaded.profile.name + "\" is a drive of " +
-                         std::to_string(loaded.profile.axes.size()) + " axes, " + std::to_string(input.axes.size()) +
-                         " are configured");
+    r.fault("/axes", fmt::format("profile \"{}\" is a drive of {} axes, {} are configured", loaded.profile.name,
+                                 loaded.profile.axes.size(), input.axes.size()));
   if (!r.faults.empty()) return r.faults;
   resolve_motors(r);
   if (!r.faults.empty()) return r.faults;

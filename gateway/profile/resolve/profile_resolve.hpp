@@ -15,24 +15,31 @@
 
 namespace axisgate::profile {
 
+/// What the configuration allows an axis; none: what its drive does.
+struct AxisLimits {
+  std::optional<Range> position;                            ///< register units
+  std::optional<std::int64_t> velocity;                     ///< 0.001 rpm
+  std::optional<std::int64_t> acceleration;                 ///< 0.1 rpm/s
+  std::optional<std::int64_t> torque;                       ///< 0.1 % of rated
+  std::optional<std::int64_t> quick_stop_deceleration_min;  ///< 0.1 rpm/s
+  friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
+};
+
 /// An axis of the configuration, in register units (design 2).
 struct ResolveAxis {
   AxisNumber number = 0;
   std::string name;
   Rational units_per_rev{10000};
   bool inverted = false;
-  std::optional<Range> position_limits;
-  std::optional<std::int64_t> velocity_limit;
-  std::optional<std::int64_t> acceleration_limit;
-  std::optional<std::int64_t> torque_limit;
-  std::optional<std::int64_t> quick_stop_deceleration_min;
-  std::int64_t standstill_velocity = 1000;
+  AxisLimits limits;
+  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
   std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
   LeaseRules lease;
   model::WatchRules watch;
   Duration jog_timeout = std::chrono::milliseconds(500);
-  std::string motor;  ///< "A", "B": which of the drive's motors; empty: its place in the list
+  std::string motor;  ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
+  friend bool operator==(const ResolveAxis&, const ResolveAxis&) = default;
 };
 
 struct ResolveInput {

@@ -37,7 +37,7 @@ void add_for_each_axis(const Resolving& r, Make make, std::vector<Write>& out) {
 
 void resolve_setup(Resolving& r) {
   for (const WriteSpec& spec : r.profile.setup) {
-    if (!spec.on.empty() && std::find(spec.on.begin(), spec.on.end(), r.input.protocol) == spec.on.end()) continue;
+    if (!spec.is_on(r.input.protocol)) continue;
     if (spec.instead_of.empty())
       add_for_each_axis(
           r, [&](AxisSlot slot) { return r.write(spec, slot); }, r.model.setup);

@@ -53,12 +53,12 @@ AxisLimit axis_limit(const ResolveAxis& axis, const QuantityRow& row) {
   const auto magnitude = [&](const std::optional<std::int64_t>& limit) {
     return limit ? AxisLimit{{-*limit, *limit}, key} : AxisLimit{};
   };
-  if (key == kPosition) return axis.position_limits ? AxisLimit{*axis.position_limits, key} : AxisLimit{};
-  if (key == kVelocity) return magnitude(axis.velocity_limit);
-  if (key == kAcceleration) return magnitude(axis.acceleration_limit);
-  if (key == kTorque) return magnitude(axis.torque_limit);
-  if (key == kQuickStop && axis.quick_stop_deceleration_min)
-    return {{*axis.quick_stop_deceleration_min, INT64_MAX}, key};
+  if (key == kPosition) return axis.limits.position ? AxisLimit{*axis.limits.position, key} : AxisLimit{};
+  if (key == kVelocity) return magnitude(axis.limits.velocity);
+  if (key == kAcceleration) return magnitude(axis.limits.acceleration);
+  if (key == kTorque) return magnitude(axis.limits.torque);
+  if (key == kQuickStop && axis.limits.quick_stop_deceleration_min)
+    return {{*axis.limits.quick_stop_deceleration_min, INT64_MAX}, key};
   return {};
 }
 

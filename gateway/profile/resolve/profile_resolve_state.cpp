@@ -159,7 +159,7 @@ void resolve_state(Resolving& r, AxisSlot slot) {
   axis.jog_timeout = input.jog_timeout;
   axis.homing_timeout = input.homing_timeout;
   axis.homing_method = input.homing_method;
-  axis.configured_torque_limit = input.torque_limit.has_value();
+  axis.configured_torque_limit = input.limits.torque.has_value();
   resolve_machine(r, slot);
   resolve_modes(r, slot);
   resolve_homing(r, slot);

@@ -51,10 +51,9 @@ void list_unsolicited(Resolving& r) {
   if (r.input.protocol == "keya-can")
     r.model.unsolicited.every = r.profile.protocols.find(r.input.protocol)->second.heartbeat;
   for (const Object& object : r.profile.objects) {
-    const auto place = object.places.find(r.input.protocol);
+    const Place* place = object.place(r.input.protocol);
     const auto id = r.ids.find(object.name);
-    if (place != object.places.end() && place->second.unsolicited && id != r.ids.end())
-      r.model.unsolicited.objects.push_back(id->second);
+    if (place != nullptr && place->unsolicited && id != r.ids.end()) r.model.unsolicited.objects.push_back(id->second);
   }
 }
 

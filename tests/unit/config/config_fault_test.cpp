@@ -3,10 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
-#include "gateway/config/config_node.hpp"
-
 namespace axisgate::config {
 namespace {
 
@@ -50,15 +46,6 @@ TEST(ConfigFaults, KeepWarningsApart) {
   faults.warn("/modbus_tcp/0/listen", "everybody may read");
   EXPECT_THAT(faults.faults(), SizeIs(0));
   EXPECT_THAT(faults.warnings(), ElementsAre("a.json: /modbus_tcp/0/listen: everybody may read"));
-}
-
-// What the schema has refused is read on all the same, for the mistakes behind it.
-TEST(ConfigNode, TakesNoTimeThatOverflows) {
-  const auto json = nlohmann::json::parse(R"({"day": 86400000, "longer": 9223372036854775807, "negative": -1})");
-  const ConfigNode node(json, "");
-  EXPECT_EQ(node.milliseconds("day", Duration(7)), std::chrono::hours(24));
-  EXPECT_EQ(node.milliseconds("longer", Duration(7)), Duration(7));
-  EXPECT_EQ(node.milliseconds("negative", Duration(7)), Duration(7));
 }
 
 }  // namespace

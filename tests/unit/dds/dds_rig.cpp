@@ -17,7 +17,7 @@ constexpr Duration kBeatPeriod = 200ms;
 std::vector<GatewayStage::Line> lines(const DdsRigOptions& options) {
   std::vector<GatewayStage::Line> out;
   out.push_back(line_of(simulated::KincoType::jd, kServo));
-  out.back().drives.front().axis.position_limits = options.position_limits;
+  out.back().drives.front().axis.limits.position = options.position_limits;
   out.back().drives.front().constants["rated_current_a"] = Rational(5);
   out.push_back(rtu_line_of({simulated::Id286proOptions{}}, kStepper));
   for (GatewayStage::Line& line : out) line.lease = options.lease;

@@ -14,8 +14,7 @@ constexpr std::size_t kMaxName = 64;
 constexpr std::uint8_t kWidestField = 4;
 
 const profile::Place* place_of(const profile::Object& object) {
-  const auto at = object.places.find("canopen");
-  return at == object.places.end() || !object.readable ? nullptr : &at->second;
+  return object.readable ? object.place("canopen") : nullptr;
 }
 
 std::optional<std::uint32_t> number_of(const bus::ExchangeResult& result) {

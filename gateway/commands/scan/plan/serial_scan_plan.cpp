@@ -25,10 +25,8 @@ bool closes_the_line(const ObjectAddress& address, const std::string& protocol) 
 /// Where a profile's object is read on this protocol; null: it is not, or a read of it is not documented to be
 /// harmless.
 const profile::Place* read_place(const profile::Object& object, const std::string& protocol) {
-  const auto at = object.places.find(protocol);
-  const bool harmless = object.readable && !object.trigger;
-  return at == object.places.end() || !harmless || closes_the_line(at->second.address, protocol) ? nullptr
-                                                                                                 : &at->second;
+  const profile::Place* place = object.readable && !object.trigger ? object.place(protocol) : nullptr;
+  return place == nullptr || closes_the_line(place->address, protocol) ? nullptr : place;
 }
 
 /// As they leave on the line.
