@@ -7,14 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gateway/check/check_can.hpp"
-#include "gateway/check/check_dds.hpp"
-#include "gateway/check/check_limits.hpp"
-#include "gateway/check/check_lines.hpp"
-#include "gateway/check/check_masters.hpp"
-#include "gateway/check/check_watch.hpp"
+#include "gateway/check/check_sections.hpp"
 #include "gateway/config/adapter_names.hpp"
-#include "gateway/config/bus_budget.hpp"
 
 namespace axisgate::check {
 namespace {
@@ -186,8 +180,8 @@ CheckReport report(const config::LoadedConfig& loaded) {
   std::string& out = report.text;
   out = fmt::format("{} is valid.\n", config.file);
   std::vector<config::BusBudget> budgets;
-  const bool floats = std::any_of(config.modbus_tcp.begin(), config.modbus_tcp.end(),
-                                  [](const auto& listener) { return listener.float_numbers; });
+  const bool floats =
+      std::ranges::any_of(config.modbus_tcp, [](const auto& listener) { return listener.float_numbers; });
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     const config::BusConfig& bus = config.buses[b];
     budgets.push_back(config::plan_bus(config::timing_of(bus), loaded.models[b]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/check/check_can.hpp"
+#include "gateway/check/check_sections.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -41,7 +41,7 @@ void add_by_node(ReportLines& out, const std::string& label, const std::vector<m
   for (const model::DriveModel& model : drives) {
     const std::string said = text(model);
     const auto same = [&](const auto& line) { return line.first == said; };
-    auto at = std::find_if(lines.begin(), lines.end(), same);
+    auto at = std::ranges::find_if(lines, same);
     if (at == lines.end()) at = lines.insert(lines.end(), {said, {}});
     at->second.push_back(model.node);
   }

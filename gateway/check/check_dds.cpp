@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/check/check_dds.hpp"
+#include "gateway/check/check_sections.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

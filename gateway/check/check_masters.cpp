@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/check/check_masters.hpp"
+#include "gateway/check/check_sections.hpp"
 
 #include <fmt/ranges.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "gateway/check/check_dds.hpp"
 #include "gateway/model/loss.hpp"
 
 namespace axisgate::check {
@@ -33,20 +32,19 @@ std::string name_of(LeaseAction action) {
 }
 
 bool has_stop_option(const model::DriveModel& drive) {
-  return std::any_of(drive.objects.begin(), drive.objects.end(),
-                     [](const model::ObjectDef& object) { return object.name == "quick_stop_option"; });
+  return std::ranges::any_of(drive.objects,
+                             [](const model::ObjectDef& object) { return object.name == "quick_stop_option"; });
 }
 
 /// A wait that is not the last step is for the motor to stand, before the steps that take the torque away.
 bool decelerates(const model::Steps& steps) {
-  return std::any_of(steps.begin(), steps.end(), [&](const model::Step& step) {
-    return step.verb == model::Step::Verb::wait && &step != &steps.back();
-  });
+  return std::ranges::any_of(
+      steps, [&](const model::Step& step) { return step.verb == model::Step::Verb::wait && &step != &steps.back(); });
 }
 
 const model::Steps& steps_in(const model::CommandDef& command, std::int16_t mode) {
   for (const auto& variant : command.variants)
-    if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end()) return variant.steps;
+    if (std::ranges::find(variant.modes, mode) != variant.modes.end()) return variant.steps;
   return command.steps;
 }
 
@@ -242,13 +240,20 @@ void warn_about_late_keep_alives(std::vector<std::string>& out, const config::Lo
   }
 }
 
+/// Those to which a client is an address, or a connection.
+std::vector<std::string> listeners_of(const config::Config& config, bool client_is_address) {
+  std::vector<std::string> out;
+  for (const auto& listener : config.modbus_tcp)
+    if (listener.client_is_address == client_is_address)
+      out.push_back(fmt::format("{}:{}", listener.host, listener.port));
+  return out;
+}
+
 void hint_at_tools(std::vector<std::string>& out, const config::LoadedConfig& loaded,
                    const std::vector<config::BusBudget>& budgets) {
   bool leased = false;
   each_axis(loaded, budgets, [&](const MasteredAxis& axis) { leased = leased || axis.config.lease.on; });
-  std::vector<std::string> listeners;
-  for (const auto& listener : loaded.config.modbus_tcp)
-    if (!listener.client_is_address) listeners.push_back(fmt::format("{}:{}", listener.host, listener.port));
+  const std::vector<std::string> listeners = listeners_of(loaded.config, false);
   if (!leased || listeners.empty()) return;
   out.push_back(
       fmt::format("on {} each connection is a client: one-shot tools such as mbpoll leave a lease behind that runs out "
@@ -265,9 +270,7 @@ void warn_about_shared_addresses(std::vector<std::string>& out, const config::Lo
     leased.push_back(axis.config.number);
     if (axis.config.lease.renew != LeaseRenewal::heartbeat) by_writes.push_back(axis.config.number);
   });
-  std::vector<std::string> listeners;
-  for (const auto& listener : loaded.config.modbus_tcp)
-    if (listener.client_is_address) listeners.push_back(fmt::format("{}:{}", listener.host, listener.port));
+  const std::vector<std::string> listeners = listeners_of(loaded.config, true);
   if (leased.empty() || listeners.empty()) return;
   const std::string who = fmt::format("on {} two programs of one computer are one client (\"client\": \"address\"): ",
                                       fmt::join(listeners, ", "));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/check/check_watch.hpp"
+#include "gateway/check/check_sections.hpp"
 
 namespace axisgate::check {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `axisgate check` says of the DDS server, and of DDS clients as masters of an axis.
-#include "gateway/check/check_dds.hpp"
+#include "gateway/check/check_sections.hpp"
 
 #include <gmock/gmock.h>
 
 #include "gateway/check/check.hpp"
-#include "gateway/check/check_masters.hpp"
 
 namespace axisgate::config {
 namespace {

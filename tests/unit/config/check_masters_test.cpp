@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `axisgate check` says of the death of an axis's masters, and the warnings that go with it.
-#include "gateway/check/check_masters.hpp"
+#include "gateway/check/check_sections.hpp"
 
 #include <gmock/gmock.h>
 
