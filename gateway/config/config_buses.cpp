@@ -49,7 +49,7 @@ void read_poll(const JsonNode& node, BusConfig& bus, ConfigFaults& faults) {
 
 template <typename Rates>
 bool has(const Rates& rates, std::uint32_t baud) {
-  return std::find(rates.begin(), rates.end(), static_cast<int>(baud)) != rates.end();
+  return std::ranges::find(rates, static_cast<int>(baud)) != rates.end();
 }
 
 void check_serial_line(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {

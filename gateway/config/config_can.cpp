@@ -32,7 +32,7 @@ void check_bitrate(const JsonNode& node, const BusConfig& bus, bool lawicel, Con
     faults.add(pointer, "is missing: a serial CAN adapter must be told the bit rate of the drives, such as 500000");
   } else if (lawicel && !can::lawicel_rate(bus.bitrate)) {
     faults.add(pointer, can::can_device_mistake(bus.device, bus.bitrate));
-  } else if (std::find(kCiaRates.begin(), kCiaRates.end(), bus.bitrate) == kCiaRates.end()) {
+  } else if (std::ranges::find(kCiaRates, bus.bitrate) == kCiaRates.end()) {
     faults.warn(pointer, fmt::format("{} is not among the bit rates of CiA 301 (10000, 20000, 50000, 125000, 250000, "
                                      "500000, 800000, 1000000)",
                                      bus.bitrate));

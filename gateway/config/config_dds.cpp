@@ -27,9 +27,8 @@ bool ipv4(std::string_view text) {
 bool interface_name(std::string_view text) {
   // An address that is wrong would be a good name: it is taken for what was meant.
   const bool digits_and_dots = text.find_first_not_of("0123456789.") == std::string_view::npos;
-  const bool other = std::any_of(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) <= ' ' || c == '/' || c == ':' || c == '\x7F';
-  });
+  const bool other = std::ranges::any_of(
+      text, [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == '/' || c == ':' || c == '\x7F'; });
   return !text.empty() && text.size() <= kLongestInterfaceName && !digits_and_dots && !other;
 }
 
@@ -66,8 +65,8 @@ void read_network(const JsonNode& node, DdsSettings& settings, ConfigFaults& fau
 }
 
 bool loopback_only(const DdsSettings& settings) {
-  return std::all_of(settings.interfaces.begin(), settings.interfaces.end(),
-                     [](const std::string& text) { return text == "lo" || is_loopback(text); });
+  return std::ranges::all_of(settings.interfaces,
+                             [](const std::string& text) { return text == "lo" || is_loopback(text); });
 }
 
 void check_reach(const JsonNode& node, const DdsSettings& settings, ConfigFaults& faults) {
@@ -206,7 +205,7 @@ std::vector<profile::FileRead> read_files_of_dds(const DdsSettings& settings) {
     const std::string_view name = std::string_view(qos).substr(0, at).substr(std::min(at, qos.rfind("<name>", at)));
     at += kFile.size();
     const std::string path = qos.substr(at, qos.find_first_of("< \t\r\n", at) - at);
-    const bool known = std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.file == path; });
+    const bool known = std::ranges::any_of(out, [&](const auto& each) { return each.file == path; });
     if (!known && name.find("private_key") == std::string_view::npos) out.push_back(profile::read_file(path));
   }
   return out;

@@ -18,7 +18,7 @@ void ConfigFaults::add(std::string_view pointer, std::string_view message) {
 
 void ConfigFaults::add(ConfigFault fault) {
   // Two drives with the same bad profile would otherwise tell each of its mistakes twice.
-  if (std::find(faults_.begin(), faults_.end(), fault) == faults_.end()) faults_.push_back(std::move(fault));
+  if (std::ranges::find(faults_, fault) == faults_.end()) faults_.push_back(std::move(fault));
 }
 
 void ConfigFaults::warn(std::string_view pointer, std::string_view message) {
@@ -26,7 +26,7 @@ void ConfigFaults::warn(std::string_view pointer, std::string_view message) {
 }
 
 bool ConfigFaults::within(std::string_view pointer) const {
-  return std::any_of(faults_.begin(), faults_.end(), [&](const ConfigFault& fault) {
+  return std::ranges::any_of(faults_, [&](const ConfigFault& fault) {
     if (fault.file != file_ || !std::string_view(fault.pointer).starts_with(pointer)) return false;
     return fault.pointer.size() == pointer.size() || fault.pointer[pointer.size()] == '/';
   });

@@ -22,7 +22,7 @@ constexpr std::array<std::uint32_t, 3> kCanRates{125000, 250000, 500000};
 constexpr int kGapCharacters = 4;
 
 bool among(const std::array<std::uint32_t, 3>& rates, std::uint32_t rate) {
-  return std::find(rates.begin(), rates.end(), rate) != rates.end();
+  return std::ranges::find(rates, rate) != rates.end();
 }
 
 void check_rate(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {

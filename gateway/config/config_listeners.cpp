@@ -42,7 +42,7 @@ void read_allow(const JsonNode& node, ListenerSettings& settings, ConfigFaults& 
   std::vector<std::string> pointers;
   for (const JsonNode& item : node["allow"].items()) {
     const AllowEntry entry = read_allow_entry(item, faults);
-    const auto same = std::find_if(settings.allow.begin(), settings.allow.end(), [&](const AllowEntry& other) {
+    const auto same = std::ranges::find_if(settings.allow, [&](const AllowEntry& other) {
       return other.network == entry.network && other.prefix == entry.prefix;
     });
     if (same != settings.allow.end() && !faults.within(item.pointer())) {

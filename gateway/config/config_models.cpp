@@ -40,7 +40,7 @@ std::vector<std::string> names_in(const std::vector<std::string>& folders) {
   for (const std::string& folder : folders)
     for (const auto& entry : fs::directory_iterator(folder, error))
       if (entry.path().extension() == ".json") out.push_back(entry.path().stem().string());
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 

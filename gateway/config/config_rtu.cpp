@@ -27,8 +27,8 @@ Duration longest_on_wire(const BusConfig& bus, const std::vector<model::DriveMod
 void check_nodes(const BusConfig& bus, const std::vector<model::DriveModel>& drives, ConfigFaults& faults) {
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const std::uint8_t node = drives[i].node;
-    const bool broadcast = std::any_of(drives.begin(), drives.end(),
-                                       [&](const model::DriveModel& model) { return model.rtu.broadcast == node; });
+    const bool broadcast =
+        std::ranges::any_of(drives, [&](const model::DriveModel& model) { return model.rtu.broadcast == node; });
     if (node == 0 || broadcast)
       faults.add(bus.drives[i].pointer + "/node",
                  fmt::format("{} is an address that every drive obeys and none answers: give the drive a number of its "

@@ -26,8 +26,7 @@ class Uses {
 };
 
 bool printable(const std::string& name) {
-  return std::none_of(name.begin(), name.end(),
-                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  return std::ranges::none_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
 void check_printable(const std::string& name, const std::string& pointer, ConfigFaults& faults) {

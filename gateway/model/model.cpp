@@ -28,7 +28,7 @@ Range ObjectDef::range() const {
 
 std::optional<std::int64_t> Binding::to_register(std::int64_t raw) const {
   if (!codes.empty()) {
-    const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.second == raw; });
+    const auto code = std::ranges::find_if(codes, [&](const auto& c) { return c.second == raw; });
     return code == codes.end() ? std::nullopt : std::optional(code->first);
   }
   if (!scaled) return std::nullopt;
@@ -46,7 +46,7 @@ std::optional<std::int64_t> Binding::to_register_or_bound(std::int64_t raw) cons
 
 std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef& object_def) const {
   if (!codes.empty()) {
-    const auto code = std::find_if(codes.begin(), codes.end(), [&](const auto& c) { return c.first == value; });
+    const auto code = std::ranges::find_if(codes, [&](const auto& c) { return c.first == value; });
     return code == codes.end() ? std::nullopt : std::optional(code->second);
   }
   if (!scaled) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef&
 
 bool Condition::holds(const ObjectDef& object_def, std::uint32_t raw) const {
   const std::int64_t seen = mask == 0 ? object_def.number(raw) : std::int64_t{low_bytes(raw, object_def.size) & mask};
-  const bool found = std::find(values.begin(), values.end(), seen) != values.end();
+  const bool found = std::ranges::find(values, seen) != values.end();
   const bool wanted = test == Test::equals || test == Test::in;
   return found == wanted;
 }
@@ -76,7 +76,7 @@ const Binding* AxisModel::binding(Quantity q) const {
 std::vector<ObjectId> constant_objects(const DriveModel& model) {
   std::vector<ObjectId> out;
   const auto add = [&](const DriveConstant::Operand& operand) {
-    if (operand.object != kNoObject && std::find(out.begin(), out.end(), operand.object) == out.end())
+    if (operand.object != kNoObject && std::ranges::find(out, operand.object) == out.end())
       out.push_back(operand.object);
   };
   for (const DriveConstant& constant : model.constants) {
@@ -147,7 +147,7 @@ std::vector<ObjectWrite> setup_writes(const DriveModel& model,
   for (const DriveConstant& constant : model.constants) constants.push_back(value_of(constant, number_of));
   for (const FactoryWrite& write : model.factory_writes) {
     const std::optional<std::int64_t> held = number_of(write.object);
-    if (!held || std::find(write.instead_of.begin(), write.instead_of.end(), *held) == write.instead_of.end()) continue;
+    if (!held || std::ranges::find(write.instead_of, *held) == write.instead_of.end()) continue;
     const std::optional<std::int64_t> raw = raw_of(write, constants);
     if (raw && *raw != *held) out.push_back({write.object, *raw, write.why});
   }
@@ -156,7 +156,7 @@ std::vector<ObjectWrite> setup_writes(const DriveModel& model,
 
 bool AxisModel::is_own_velocity_mode(int in_force) const {
   const std::vector<std::int16_t>& own = cia402.velocity_modes;
-  return std::find(own.begin(), own.end(), in_force) != own.end();
+  return std::ranges::find(own, in_force) != own.end();
 }
 
 bool AxisModel::needs_for_state(ObjectId object) const {
@@ -165,21 +165,19 @@ bool AxisModel::needs_for_state(ObjectId object) const {
 }
 
 bool DriveModel::needs_for_state(ObjectId object) const {
-  return std::any_of(axes.begin(), axes.end(),
-                     [object](const AxisModel& axis) { return axis.needs_for_state(object); });
+  return std::ranges::any_of(axes, [object](const AxisModel& axis) { return axis.needs_for_state(object); });
 }
 
 bool DriveModel::needs(ObjectId object) const {
-  return needs_for_state(object) || std::any_of(axes.begin(), axes.end(), [object](const AxisModel& axis) {
+  return needs_for_state(object) || std::ranges::any_of(axes, [object](const AxisModel& axis) {
            const Binding* position = axis.binding(Quantity::position_actual);
            return position != nullptr && position->object == object;
          });
 }
 
 ObjectId DriveModel::find(ObjectAddress address) const {
-  const auto at = std::find_if(objects.begin(), objects.end(), [&](const ObjectDef& candidate) {
-    return !candidate.emulated && candidate.address == address;
-  });
+  const auto at = std::ranges::find_if(
+      objects, [&](const ObjectDef& candidate) { return !candidate.emulated && candidate.address == address; });
   return at == objects.end() ? kNoObject : static_cast<ObjectId>(at - objects.begin());
 }
 

@@ -336,7 +336,7 @@ struct CanopenProperties {
   /// 1018h sub 1 to 4 as the configuration has them: vendor, product, revision, serial.
   std::array<std::optional<std::uint32_t>, 4> identity{};
   [[nodiscard]] bool identity_given() const {
-    return std::any_of(identity.begin(), identity.end(), [](const auto& number) { return number.has_value(); });
+    return std::ranges::any_of(identity, [](const auto& number) { return number.has_value(); });
   }
 };
 

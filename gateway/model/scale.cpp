@@ -13,17 +13,18 @@ struct BaseRow {
   std::string_view name;
   Base base;
   Kind kind;
+  std::int64_t registers;  ///< of design 2 that are one of it; 0: as many as the axis has units in a turn
 };
 constexpr std::array<BaseRow, 9> kBases{{
-    {"rpm", Base::rpm, Kind::velocity},
-    {"rps", Base::rps, Kind::velocity},
-    {"rpm/s", Base::rpm_per_s, Kind::acceleration},
-    {"rps/s", Base::rps_per_s, Kind::acceleration},
-    {"rev", Base::rev, Kind::position},
-    {"Arms", Base::arms, Kind::current},
-    {"%", Base::percent, Kind::torque},
-    {"degC", Base::degc, Kind::temperature},
-    {"V", Base::volt, Kind::voltage},
+    {"rpm", Base::rpm, Kind::velocity, 1000},
+    {"rps", Base::rps, Kind::velocity, 60000},
+    {"rpm/s", Base::rpm_per_s, Kind::acceleration, 10},
+    {"rps/s", Base::rps_per_s, Kind::acceleration, 600},
+    {"rev", Base::rev, Kind::position, 0},
+    {"Arms", Base::arms, Kind::current, 100},
+    {"%", Base::percent, Kind::torque, 10},
+    {"degC", Base::degc, Kind::temperature, 10},
+    {"V", Base::volt, Kind::voltage, 10},
 }};
 
 std::int64_t saturated(Int128 value) {
@@ -43,7 +44,7 @@ Int128 ceiling_of(Int128 numerator, Int128 denominator) { return -floor_of(-nume
 }  // namespace
 
 std::optional<Base> base_named(std::string_view name) {
-  const auto at = std::find_if(kBases.begin(), kBases.end(), [&](const BaseRow& row) { return row.name == name; });
+  const auto at = std::ranges::find_if(kBases, [&](const BaseRow& row) { return row.name == name; });
   return at == kBases.end() ? std::nullopt : std::optional(at->base);
 }
 
@@ -71,25 +72,8 @@ std::optional<Rational> raw_per_base(const Unit& unit, const Constants& constant
 }
 
 Rational base_per_register(Base base, const Rational& units_per_rev) {
-  switch (base) {
-    case Base::rpm:
-      return Rational(1, 1000);
-    case Base::rps:
-      return Rational(1, 60000);
-    case Base::rpm_per_s:
-    case Base::percent:
-    case Base::degc:
-    case Base::volt:
-      return Rational(1, 10);
-    case Base::rps_per_s:
-      return Rational(1, 600);
-    case Base::rev:
-      return units_per_rev.inverse();
-    case Base::arms:
-      return Rational(1, 100);
-  }
-  assert(false);
-  return Rational(1);
+  const std::int64_t registers = kBases[static_cast<std::size_t>(base)].registers;
+  return registers == 0 ? units_per_rev.inverse() : Rational(1, registers);
 }
 
 std::optional<Rational> in_registers(const Amount& amount, const Constants& constants, const Rational& units_per_rev) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "gateway/core/name_table.hpp"
@@ -245,23 +246,16 @@ Eds parse_eds(std::string_view text) {
 }
 
 std::optional<EdsWidth> width_of(EdsType type) {
-  switch (type) {
-    case 0x0001:  // BOOLEAN: carried as one byte
-    case 0x0005:
-      return EdsWidth{1, false};
-    case 0x0002:
-      return EdsWidth{1, true};
-    case 0x0003:
-      return EdsWidth{2, true};
-    case 0x0004:
-      return EdsWidth{4, true};
-    case 0x0006:
-      return EdsWidth{2, false};
-    case 0x0007:
-      return EdsWidth{4, false};
-    default:
-      return std::nullopt;
-  }
+  // BOOLEAN is carried as one byte.
+  static constexpr auto kWidths = std::to_array<std::pair<EdsType, EdsWidth>>({{0x01, {1, false}},
+                                                                               {0x02, {1, true}},
+                                                                               {0x03, {2, true}},
+                                                                               {0x04, {4, true}},
+                                                                               {0x05, {1, false}},
+                                                                               {0x06, {2, false}},
+                                                                               {0x07, {4, false}}});
+  const auto* const found = std::ranges::find(kWidths, type, [](const auto& row) { return row.first; });
+  return found == kWidths.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::string eds_type_name(EdsType type) {

@@ -143,7 +143,7 @@ class Wording {
 
   void put(const std::string& pointer, std::string message) {
     const SchemaFault fault{pointer, std::move(message)};
-    if (std::find(out_.begin(), out_.end(), fault) == out_.end()) out_.push_back(fault);
+    if (std::ranges::find(out_, fault) == out_.end()) out_.push_back(fault);
   }
 
   /// The validator names the first unknown key only; a person wants them all.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sections "alarms", "checks" and "setup".
-#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 
 namespace axisgate::profile {
@@ -13,12 +13,10 @@ namespace {
 constexpr std::size_t kFaultWords = 2;
 
 /// The alarms that a check may raise: the others have their own makers.
-constexpr std::array<std::pair<std::string_view, AxisAlarm>, 4> kCheckAlarms{{
-    {"identity_mismatch", AxisAlarm::identity_mismatch},
-    {"local_control", AxisAlarm::local_control},
-    {"limit_inputs_open", AxisAlarm::limit_inputs_open},
-    {"stop_options", AxisAlarm::stop_options},
-}};
+constexpr auto kCheckAlarms = names_of<AxisAlarm>({{AxisAlarm::identity_mismatch, "identity_mismatch"},
+                                                   {AxisAlarm::local_control, "local_control"},
+                                                   {AxisAlarm::limit_inputs_open, "limit_inputs_open"},
+                                                   {AxisAlarm::stop_options, "stop_options"}});
 
 /// What one section of alarms has in common.
 struct AlarmTable {
@@ -132,9 +130,7 @@ void read_checks(Reading& reading) {
     if (!out.name.empty() && !names.insert(out.name).second)
       reading.fault(node.pointer("name"), "check \"{}\" is given twice", out.name);
     out.bad = reading.condition(node, node.text("object"));
-    const std::string alarm = node.text("alarm");
-    for (const auto& [name, value] : kCheckAlarms)
-      if (name == alarm) out.alarm = value;
+    out.alarm = kCheckAlarms.named(node.text("alarm")).value_or(out.alarm);
     out.text = node.text("text");
     for (const JsonNode& remedy : node["remedy"].elements()) out.remedy.push_back(read_write(reading, remedy));
     reading.profile.checks.push_back(std::move(out));

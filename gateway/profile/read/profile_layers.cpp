@@ -56,9 +56,7 @@ void note_places(const json& node, const std::string& pointer, const std::string
 
 /// Keys of which null says what the drive does not have. Of "loss" leaving it out would not say that.
 constexpr std::array kNullable{"loss", "heartbeat_ms", "broadcast"};
-bool null_is_a_value(const std::string& key) {
-  return std::find(kNullable.begin(), kNullable.end(), key) != kNullable.end();
-}
+bool null_is_a_value(const std::string& key) { return std::ranges::find(kNullable, key) != kNullable.end(); }
 
 /// What takes the place of words in one copy of an entry: "$axis" -> "a", "$AXIS" -> "A".
 struct Replacements {
@@ -76,7 +74,7 @@ struct Replacements {
 /// {"A": 4, "B": 6}
 bool is_one_for_each(const json& node) {
   if (!node.is_object() || node.empty()) return false;
-  return std::all_of(node.items().begin(), node.items().end(), [](const auto& entry) {
+  return std::ranges::all_of(node.items(), [](const auto& entry) {
     return entry.key().size() == 1 && entry.key()[0] >= 'A' && entry.key()[0] <= 'D';
   });
 }
@@ -146,7 +144,7 @@ class Composer {
                                 folders_.empty() ? "" : " or in ", listed(folders_)));
     std::error_code error;
     const auto same = [&](const std::string& known) { return fs::equivalent(known, *base, error); };
-    if (std::any_of(out_.files.begin(), out_.files.end(), same))
+    if (std::ranges::any_of(out_.files, same))
       return refuse(
           fmt::format("\"{}\" extends this profile itself, directly or by others: one of them must stand alone", name));
     if (out_.files.size() > kMaxBases)
@@ -214,8 +212,7 @@ class Composer {
     }
     for (const auto& [section, entries] : sections->items()) {
       const std::string at = pointer_to("/each_axis", section);
-      if (std::find(kEachAxisSections.begin(), kEachAxisSections.end(), section) == kEachAxisSections.end() ||
-          !entries.is_object()) {
+      if (std::ranges::find(kEachAxisSections, section) == kEachAxisSections.end() || !entries.is_object()) {
         fault(own, at, "is not for each axis: only objects \"constants\", \"units\" and \"objects\" can be");
         continue;
       }
@@ -302,7 +299,7 @@ class Composer {
     const auto is_name = [](const json& entry) {
       if (!entry.is_string()) return false;
       const std::string& name = entry.get_ref<const std::string&>();
-      return !name.empty() && name.size() <= 48 && std::all_of(name.begin(), name.end(), [](char c) {
+      return !name.empty() && name.size() <= 48 && std::ranges::all_of(name, [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
       });
     };

@@ -96,8 +96,7 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
     // It may be right by itself: what is missing there may have been taken out here.
     if (told.file != path) told.message += " (as extended by " + std::filesystem::path(path).filename().string() + ")";
     // What is written once for all axes is wrong once.
-    if (std::find(out.faults.begin(), out.faults.end(), told) == out.faults.end())
-      out.faults.push_back(std::move(told));
+    if (std::ranges::find(out.faults, told) == out.faults.end()) out.faults.push_back(std::move(told));
   }
   return out;
 }

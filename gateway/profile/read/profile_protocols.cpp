@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Section "protocols", and what of it only makes sense once objects are known.
 #include <algorithm>
-#include <array>
 #include <set>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 
 namespace axisgate::profile {
@@ -62,16 +62,13 @@ std::vector<ResyncSpec> resync_in(const JsonNode& node) {
 }
 
 LossSpec loss_in(const JsonNode& loss) {
-  static constexpr std::array<std::pair<std::string_view, LossSpec::By>, 3> kWays{{
-      {"heartbeat_consumer", LossSpec::By::heartbeat_consumer},
-      {"life_guarding", LossSpec::By::life_guarding},
-      {"command_watchdog", LossSpec::By::command_watchdog},
-  }};
+  using enum LossSpec::By;
+  static constexpr auto kWays = names_of<LossSpec::By>({{heartbeat_consumer, "heartbeat_consumer"},
+                                                        {life_guarding, "life_guarding"},
+                                                        {command_watchdog, "command_watchdog"}});
   LossSpec out;
   if (!loss || loss.is_null()) return out;
-  const std::string by = loss.text("by");
-  for (const auto& [name, way] : kWays)
-    if (name == by) out.by = way;
+  out.by = kWays.named(loss.text("by")).value_or(nothing);
   out.object = loss.text("object");
   out.value = loss.whole("value", 0);
   out.after = milliseconds(loss.whole("after_ms", 0));
@@ -95,7 +92,7 @@ std::int64_t registers_of(const Object& object, const Place& place) { return obj
 /// A resynchronisation read longer than its object must lie where nothing is missing, so far as the profile says where
 /// that is.
 bool within_a_run(const model::RtuProperties& rtu, std::int64_t first, std::int64_t count) {
-  return rtu.runs.empty() || std::any_of(rtu.runs.begin(), rtu.runs.end(), [&](const auto& run) {
+  return rtu.runs.empty() || std::ranges::any_of(rtu.runs, [&](const auto& run) {
            return first >= run.first && first + count - 1 <= run.second;
          });
 }

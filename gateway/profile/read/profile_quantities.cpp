@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Section "quantities": which object each quantity of the unified axis is had from.
+#include "gateway/core/name_table.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 
 namespace axisgate::profile {
 
 namespace {
 
-std::optional<model::PollClass> poll_named(const std::string& name) {
-  if (name == "fast") return model::PollClass::fast;
-  if (name == "normal") return model::PollClass::normal;
-  if (name == "slow") return model::PollClass::slow;
-  if (name == "once") return model::PollClass::once;
-  return std::nullopt;
-}
+constexpr auto kPollClasses = names_of<model::PollClass>({{model::PollClass::fast, "fast"},
+                                                          {model::PollClass::normal, "normal"},
+                                                          {model::PollClass::slow, "slow"},
+                                                          {model::PollClass::once, "once"}});
 
 bool may_be_composed(Quantity quantity) {
   return quantity == Quantity::digital_inputs || quantity == Quantity::digital_outputs ||
@@ -107,7 +105,7 @@ void read_quantities(Reading& reading) {
     out.quantity = known.quantity;
     out.pointer = node.pointer();
     out.objects = node.names("object");
-    out.poll = poll_named(node.text("poll"));
+    out.poll = kPollClasses.named(node.text("poll"));
     read_units(reading, node["unit"], out);
     if (out.objects.empty() != node.has("bits"))
       reading.fault(out.pointer, "a quantity needs either \"object\" or \"bits\"");

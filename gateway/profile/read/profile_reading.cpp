@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "gateway/core/name_table.hpp"
+
 namespace axisgate::profile {
 
 void Reading::fault(const std::string& pointer, std::string message) {
@@ -15,7 +17,7 @@ void Reading::fault(const std::string& pointer, std::string message) {
   const auto end = faults_.begin() + static_cast<std::ptrdiff_t>(from_schema_);
   if (std::any_of(faults_.begin(), end, covers)) return;
   const SchemaFault found{pointer, std::move(message)};
-  if (std::find(faults_.begin(), faults_.end(), found) == faults_.end()) faults_.push_back(found);
+  if (std::ranges::find(faults_, found) == faults_.end()) faults_.push_back(found);
 }
 
 bool Reading::names_object(const std::string& object, const std::string& pointer) {
@@ -59,8 +61,8 @@ const Constant* Reading::constant_named(const std::string& name, const std::stri
   return nullptr;
 }
 
-bool Reading::needs_readable(const Object& object, const std::string& pointer, std::string_view else_told) {
-  if (!object.readable) fault(pointer, "object \"{}\" cannot be read{}", object.name, else_told);
+bool Reading::needs_readable(const Object& object, const std::string& pointer, std::string_view consequence) {
+  if (!object.readable) fault(pointer, "object \"{}\" cannot be read{}", object.name, consequence);
   return object.readable;
 }
 
@@ -100,13 +102,13 @@ std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& no
 }
 
 std::optional<DataType> type_named(std::string_view name) {
-  if (name.size() < 2 || (name[0] != 'u' && name[0] != 'i')) return std::nullopt;
-  const std::string_view bits = name.substr(1);
-  const bool is_signed = name[0] == 'i';
-  if (bits == "8") return DataType{1, is_signed};
-  if (bits == "16") return DataType{2, is_signed};
-  if (bits == "32") return DataType{4, is_signed};
-  return std::nullopt;
+  static constexpr auto kTypes = names_of<DataType>({{{1, false}, "u8"},
+                                                     {{2, false}, "u16"},
+                                                     {{4, false}, "u32"},
+                                                     {{1, true}, "i8"},
+                                                     {{2, true}, "i16"},
+                                                     {{4, true}, "i32"}});
+  return kTypes.named(name);
 }
 
 model::Nvm nvm_named(std::string_view name) {

@@ -48,8 +48,8 @@ class Reading {
   const Constant* constant_named(const std::string& name, const std::string& pointer);
 
   // Each says what is wrong at `pointer` with an object that is not so. Returns whether it is.
-  /// `else_told`: what follows from it, behind "cannot be read".
-  bool needs_readable(const Object& object, const std::string& pointer, std::string_view else_told = "");
+  /// `consequence`: what follows from it, behind "cannot be read".
+  bool needs_readable(const Object& object, const std::string& pointer, std::string_view consequence = "");
   bool needs_writable(const Object& object, const std::string& pointer);
   bool needs_address(const Object& object, std::string_view protocol, const std::string& pointer);
   bool needs_number(const Object& object, std::int64_t number, const std::string& pointer);
@@ -93,7 +93,7 @@ class Reading {
 [[nodiscard]] inline Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
 /// The whole numbers of a list.
 [[nodiscard]] std::vector<std::int64_t> numbers_in(const JsonNode& list);
-/// One text for each axis, from {"A": ..., "B": ...}; `what` of an axis that has none is told to be missing.
+/// One text for each axis, from {"A": ..., "B": ...}; a fault where the `what` of an axis is missing.
 [[nodiscard]] std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& node,
                                                           std::string_view what);
 [[nodiscard]] std::optional<DataType> type_named(std::string_view name);

@@ -24,7 +24,7 @@ void check_protocol(Resolving& r) {
 std::string why_no_more(const Profile& profile, const std::string& name, const Constant& constant) {
   if (!profile.configured_mode) return "";
   const auto& names = profile.configured_mode->constants;
-  return std::find(names.begin(), names.end(), name) == names.end() ? "" : ": " + constant.text;
+  return std::ranges::find(names, name) == names.end() ? "" : ": " + constant.text;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ std::vector<model::ObjectId> meanings(const Resolving& r, const std::string& nam
   std::vector<model::ObjectId> out;
   for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
     const model::ObjectId id = r.id(name, static_cast<AxisSlot>(i));
-    if (id != model::kNoObject && std::find(out.begin(), out.end(), id) == out.end()) out.push_back(id);
+    if (id != model::kNoObject && std::ranges::find(out, id) == out.end()) out.push_back(id);
   }
   return out;
 }

@@ -33,7 +33,7 @@ Needs needs_of(Command command, bool is_virtual) {
 }
 
 bool has_mode(const model::AxisModel& axis, std::int16_t mode) {
-  return std::any_of(axis.modes.begin(), axis.modes.end(), [&](const auto& row) { return row.first == mode; });
+  return std::ranges::any_of(axis.modes, [&](const auto& row) { return row.first == mode; });
 }
 
 std::optional<model::Steps> steps_from(const Resolving& r, const std::vector<StepSpec>& specs, AxisSlot slot) {
@@ -72,8 +72,7 @@ std::optional<model::CommandDef> command_from(const Resolving& r, const CommandS
   const model::AxisModel& axis = r.model.axes[slot];
   const Needs needs = needs_of(spec.command, axis.virtual_axis.has_value());
   if (needs.mode != 0 && !has_mode(axis, needs.mode)) return std::nullopt;
-  if (std::any_of(needs.quantities.begin(), needs.quantities.end(),
-                  [&](Quantity q) { return axis.binding(q) == nullptr; }))
+  if (std::ranges::any_of(needs.quantities, [&](Quantity q) { return axis.binding(q) == nullptr; }))
     return std::nullopt;
   model::CommandDef out;
   out.zero_only = spec.zero_only;

@@ -13,7 +13,7 @@ void resolve_checks(Resolving& r) {
     for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
       const auto slot = static_cast<AxisSlot>(i);
       std::optional<model::Condition> bad = r.condition(spec.bad, slot);
-      if (!bad || std::find(seen.begin(), seen.end(), bad->object) != seen.end()) continue;
+      if (!bad || std::ranges::find(seen, bad->object) != seen.end()) continue;
       seen.push_back(bad->object);
       model::Check out{spec.name, std::move(*bad), spec.alarm, r.model.object(seen.back()).slot, spec.text, {}};
       for (const WriteSpec& write : spec.remedy)
@@ -29,7 +29,7 @@ void add_for_each_axis(const Resolving& r, Make make, std::vector<Write>& out) {
   std::vector<model::ObjectId> seen;
   for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
     const std::optional<Write> write = make(static_cast<AxisSlot>(i));
-    if (!write || std::find(seen.begin(), seen.end(), write->object) != seen.end()) continue;
+    if (!write || std::ranges::find(seen, write->object) != seen.end()) continue;
     seen.push_back(write->object);
     out.push_back(*write);
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which motor each axis is, which modes it can have, and what is repeated in them.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "gateway/profile/json/json_schema.hpp"
@@ -50,7 +52,7 @@ void check_fixed_mode(Resolving& r, AxisSlot slot) {
 AxisSlot Resolving::motor(AxisSlot slot) const { return slot < motors.size() ? motors[slot] : slot; }
 
 AxisSlot Resolving::axis_of(AxisSlot motor) const {
-  const auto at = std::find(motors.begin(), motors.end(), motor);
+  const auto at = std::ranges::find(motors, motor);
   return at == motors.end() ? kNoAxis : static_cast<AxisSlot>(at - motors.begin());
 }
 
@@ -66,8 +68,7 @@ std::optional<std::int16_t> Resolving::configured_mode(AxisSlot slot) const {
 bool Resolving::can_have(AxisSlot slot, std::int16_t mode) const {
   const auto& spec = profile.configured_mode;
   if (!spec || configured_mode(slot) == mode) return true;
-  return !spec->is_fixed_on(input.protocol) &&
-         std::find(spec->only.begin(), spec->only.end(), mode) == spec->only.end();
+  return !spec->is_fixed_on(input.protocol) && std::ranges::find(spec->only, mode) == spec->only.end();
 }
 
 bool Resolving::can_follow(AxisSlot slot, Quantity setpoint) const {
@@ -86,18 +87,17 @@ void resolve_motors(Resolving& r) {
   for (std::size_t i = 0; i < r.input.axes.size(); ++i) {
     const std::string pointer = "/axes/" + std::to_string(i) + "/motor";
     const std::string& name = r.input.axes[i].motor;
-    const auto at =
-        name.empty() ? known.begin() + static_cast<std::ptrdiff_t>(i) : std::find(known.begin(), known.end(), name);
+    const auto at = name.empty() ? known.begin() + static_cast<std::ptrdiff_t>(i) : std::ranges::find(known, name);
     if (at == known.end()) {
-      r.fault(pointer, "profile \"" + r.profile.name + "\" has no motor \"" + name + "\": it has " + listed(known));
+      r.fault(pointer,
+              fmt::format("profile \"{}\" has no motor \"{}\": it has {}", r.profile.name, name, listed(known)));
       continue;
     }
     const auto motor = static_cast<AxisSlot>(at - known.begin());
     const AxisSlot taken = r.axis_of(motor);
     if (taken != kNoAxis)
-      r.fault(pointer, "motor \"" + *at + "\"" +
-                           (name.empty() ? ", which this axis is by its place in the list," : "") +
-                           " is the axis at /axes/" + std::to_string(taken) + " already: give each axis its own motor");
+      r.fault(pointer, fmt::format("motor \"{}\"{} is the axis at /axes/{} already: give each axis its own motor", *at,
+                                   name.empty() ? ", which this axis is by its place in the list," : "", taken));
     r.motors.push_back(motor);
   }
   if (!r.profile.configured_mode || !r.faults.empty()) return;
@@ -105,7 +105,7 @@ void resolve_motors(Resolving& r) {
     if (r.configured_mode(static_cast<AxisSlot>(i))) continue;
     std::vector<std::string> numbers;
     for (const auto& [mode, raw] : r.profile.modes) numbers.push_back(std::to_string(raw));
-    std::sort(numbers.begin(), numbers.end());
+    std::ranges::sort(numbers);
     r.fault(pointer_to("/constants", mode_constant(*r.profile.configured_mode, r.motors[i])),
             "must be one of " + listed(numbers));
   }
@@ -127,8 +127,7 @@ void resolve_modes(Resolving& r, AxisSlot slot) {
   const auto& keepalive = r.profile.keepalive;
   if (!keepalive || !keepalive->is_on(r.input.protocol)) return;
   for (const auto& [mode, name] : keepalive->resend) {
-    const bool offered =
-        std::any_of(axis.modes.begin(), axis.modes.end(), [&mode = mode](const auto& m) { return m.first == mode; });
+    const bool offered = std::ranges::any_of(axis.modes, [&mode = mode](const auto& m) { return m.first == mode; });
     if (const model::ObjectId id = r.id(name, slot); offered && id != model::kNoObject)
       axis.keep_alive.emplace_back(mode, id);
   }

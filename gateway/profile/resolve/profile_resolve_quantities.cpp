@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quantities of one axis: where each is had from, its exact scale and the limits of a write.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/resolve/limit_keys.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
@@ -122,7 +126,7 @@ class AxisQuantities {
     const auto there = [&](const AlarmSpec& row) {
       return r_.id(r_.profile.fault_words[row.word], slot_) != model::kNoObject;
     };
-    if (!std::any_of(r_.profile.alarms.begin(), r_.profile.alarms.end(), there)) return std::nullopt;
+    if (!std::ranges::any_of(r_.profile.alarms, there)) return std::nullopt;
     model::Binding out;
     out.quantity = Quantity::error_code;
     out.limits = range_of(RegisterType::u16);
@@ -184,17 +188,15 @@ class AxisQuantities {
     if (!row.writable || own.key.empty() || constants.empty()) return;
     const std::string pointer = "/axes/" + std::to_string(slot_) + "/limits/" + own.key;
     if (std::ranges::find(r_.faults, pointer, &Fault::pointer) != r_.faults.end()) return;  // by another quantity
-    std::string names = constants.front();
-    for (std::size_t i = 1; i < constants.size(); ++i) names += " and " + constants[i];
-    r_.fault(pointer, "limits nothing: this drive's unit of it needs " + names + ": add " +
-                          (constants.size() == 1 ? "it" : "them") +
-                          " to the drive's \"constants\", or take the limit out");
+    r_.fault(pointer, fmt::format("limits nothing: this drive's unit of it needs {}: add {} to the drive's "
+                                  "\"constants\", or take the limit out",
+                                  fmt::join(constants, " and "), constants.size() == 1 ? "it" : "them"));
   }
 
   /// A drive that numbers its homing methods otherwise: the register has CiA 402's.
   void translate(model::Binding& out) const {
     const auto& methods = r_.profile.homing.methods;
-    if (std::all_of(methods.begin(), methods.end(), [](const auto& row) { return row.first == row.second; })) return;
+    if (std::ranges::all_of(methods, [](const auto& row) { return row.first == row.second; })) return;
     out.codes.assign(methods.begin(), methods.end());
   }
 
@@ -209,9 +211,9 @@ class AxisQuantities {
     const AxisLimit own = axis_limit(axis_, row);
     const Range allowed = model::intersection(out.limits, own.range);
     if (allowed.min > allowed.max)
-      r_.fault("/axes/" + std::to_string(slot_) + "/limits/" + own.key,
-               "leaves no value for " + std::string(row.name) + ", which this drive takes from " +
-                   std::to_string(out.limits.min) + " to " + std::to_string(out.limits.max));
+      r_.fault(fmt::format("/axes/{}/limits/{}", slot_, own.key),
+               fmt::format("leaves no value for {}, which this drive takes from {} to {}", row.name, out.limits.min,
+                           out.limits.max));
     out.limits = allowed;
     out.limited = own.range.min != INT64_MIN || own.range.max != INT64_MAX;
   }
@@ -243,29 +245,24 @@ class AxisQuantities {
 }  // namespace
 
 std::string_view limit_key(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::target_position:
-    case Quantity::position_limit_min:
-    case Quantity::position_limit_max:
-      return kPosition;
-    case Quantity::target_velocity:
-    case Quantity::profile_velocity:
-    case Quantity::homing_speed_switch:
-    case Quantity::homing_speed_zero:
-    case Quantity::max_velocity:
-      return kVelocity;
-    case Quantity::profile_acceleration:
-    case Quantity::profile_deceleration:
-    case Quantity::homing_acceleration:
-      return kAcceleration;
-    case Quantity::target_torque:
-    case Quantity::max_torque:
-      return kTorque;
-    case Quantity::quick_stop_deceleration:
-      return kQuickStop;
-    default:
-      return {};
-  }
+  using enum Quantity;
+  static constexpr auto kKeys = names_of<Quantity>({
+      {target_position, kPosition},
+      {position_limit_min, kPosition},
+      {position_limit_max, kPosition},
+      {target_velocity, kVelocity},
+      {profile_velocity, kVelocity},
+      {homing_speed_switch, kVelocity},
+      {homing_speed_zero, kVelocity},
+      {max_velocity, kVelocity},
+      {profile_acceleration, kAcceleration},
+      {profile_deceleration, kAcceleration},
+      {homing_acceleration, kAcceleration},
+      {target_torque, kTorque},
+      {max_torque, kTorque},
+      {quick_stop_deceleration, kQuickStop},
+  });
+  return kKeys.of(quantity, "");
 }
 
 void resolve_quantities(Resolving& resolving, AxisSlot slot) { AxisQuantities(resolving, slot).run(); }

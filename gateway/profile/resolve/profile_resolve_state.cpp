@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the state of one axis is known, its modes and its homing.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -29,7 +32,7 @@ std::optional<model::Condition> condition(const Resolving& r, const std::optiona
 bool may_be_zeroed(const Resolving& r, const std::string& name, AxisSlot slot) {
   const auto belongs_to = [&](Quantity quantity) {
     const QuantitySpec* spec = r.profile.find(quantity);
-    return spec != nullptr && std::find(spec->objects.begin(), spec->objects.end(), name) != spec->objects.end();
+    return spec != nullptr && std::ranges::find(spec->objects, name) != spec->objects.end();
   };
   for (const Quantity quantity : {Quantity::target_velocity, Quantity::target_torque})
     if (belongs_to(quantity) && !r.can_follow(slot, quantity)) return false;
@@ -64,7 +67,7 @@ void resolve_roles(Resolving& r, AxisSlot slot) {
 /// Every object once, the fault first: a drive that is there always answers for it.
 void add_state_sources(const model::VirtualProperties& facts, model::AxisModel& axis) {
   const auto add = [&](const model::Condition& condition) {
-    if (std::find(axis.state_sources.begin(), axis.state_sources.end(), condition.object) == axis.state_sources.end())
+    if (std::ranges::find(axis.state_sources, condition.object) == axis.state_sources.end())
       axis.state_sources.push_back(condition.object);
   };
   add(facts.fault);
@@ -81,8 +84,8 @@ void resolve_machine(Resolving& r, AxisSlot slot) {
     for (const auto& [role, object] : {std::pair("statusword", axis.statusword),
                                        std::pair("controlword", axis.controlword), std::pair("mode", axis.mode)})
       if (object == model::kNoObject)
-        r.fault("/profile", "profile \"" + r.profile.name + "\" has no " + role + " on " + r.input.protocol +
-                                ", so nothing can be done there");
+        r.fault("/profile", fmt::format("profile \"{}\" has no {} on {}, so nothing can be done there", r.profile.name,
+                                        role, r.input.protocol));
     return;
   }
   model::VirtualProperties out;
@@ -113,11 +116,9 @@ void resolve_homing(Resolving& r, AxisSlot slot) {
   axis.homing_failed = condition(r, spec.failed, slot);
   const std::optional<std::int16_t> configured = r.input.axes[slot].homing_method;
   if (!configured || spec.methods.contains(*configured)) return;
-  std::string known;
-  for (const std::int16_t method : axis.homing_methods) known += (known.empty() ? "" : ", ") + std::to_string(method);
-  r.fault("/axes/" + std::to_string(slot) + "/homing_method", "this drive has no homing method " +
-                                                                  std::to_string(*configured) + ": it has " +
-                                                                  (known.empty() ? "none" : known));
+  const std::string known = fmt::format("{}", fmt::join(axis.homing_methods, ", "));
+  r.fault(fmt::format("/axes/{}/homing_method", slot),
+          fmt::format("this drive has no homing method {}: it has {}", *configured, known.empty() ? "none" : known));
 }
 
 /// The constant rated_speed_rpm; of a drive with several motors rated_speed_a_rpm, after the motor's name.

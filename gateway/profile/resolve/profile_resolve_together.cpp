@@ -23,7 +23,7 @@ bool is_followed(const model::DriveModel& model, model::ObjectId id) {
   const AxisSlot slot = model.object(id).slot;
   if (slot == kNoAxis) return false;
   const auto& bindings = model.axes[slot].bindings;
-  return std::any_of(bindings.begin(), bindings.end(), [&](const model::Binding& b) { return b.object == id; });
+  return std::ranges::any_of(bindings, [&](const model::Binding& b) { return b.object == id; });
 }
 
 /// Each field once: all enable bits in the order of the motors, and then all values.
@@ -32,14 +32,14 @@ void list_composed(model::DriveModel& model) {
   for (std::size_t i = 0; i < model.objects.size(); ++i) {
     const auto id = static_cast<model::ObjectId>(i);
     if (!model.object(id).composed) continue;
-    const auto same = std::find_if(out.begin(), out.end(),
-                                   [&](model::ObjectId o) { return at_one_place(model.object(o), model.object(id)); });
+    const auto same =
+        std::ranges::find_if(out, [&](model::ObjectId o) { return at_one_place(model.object(o), model.object(id)); });
     if (same == out.end())
       out.push_back(id);
     else if (is_followed(model, id) && !is_followed(model, *same))
       *same = id;
   }
-  std::sort(out.begin(), out.end(), [&](model::ObjectId a, model::ObjectId b) {
+  std::ranges::sort(out, [&](model::ObjectId a, model::ObjectId b) {
     const model::ObjectDef& left = model.object(a);
     const model::ObjectDef& right = model.object(b);
     if (left.turns_on != right.turns_on) return left.turns_on;
