@@ -4,6 +4,7 @@
 // and that one client never sees what belongs to another. Never speaks to an axis and never reads a clock.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -110,11 +111,9 @@ struct Client {
   [[nodiscard]] std::optional<std::uint16_t> seen_id(AxisNumber axis) const;
 };
 
-class ClientRegistry {
+class ClientRegistry : boost::noncopyable {
  public:
   ClientRegistry() = default;
-  ClientRegistry(const ClientRegistry&) = delete;
-  ClientRegistry& operator=(const ClientRegistry&) = delete;
 
   struct Connected {
     std::shared_ptr<Client> client;

@@ -18,12 +18,12 @@ void ObjectBuffers::keep(const ObjectKey& key, ObjectBytes content, Instant now)
 }
 
 void ObjectBuffers::forget(const ObjectKey& key) {
-  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& each) { return each.key == key; });
+  const auto found = std::ranges::find_if(kept_, [&](const Kept& each) { return each.key == key; });
   if (found != kept_.end()) kept_.erase(found);
 }
 
 ObjectBytes ObjectBuffers::kept(const ObjectKey& key, Instant now) const {
-  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& each) { return each.key == key; });
+  const auto found = std::ranges::find_if(kept_, [&](const Kept& each) { return each.key == key; });
   return found == kept_.end() || is_over(found->at, now) ? nullptr : found->content;
 }
 

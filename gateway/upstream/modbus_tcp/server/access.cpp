@@ -47,8 +47,8 @@ std::uint8_t rank_of(const ListenerSettings& settings, const Address& address) {
 }
 
 std::uint32_t kept_for_operators(const ListenerSettings& settings) {
-  const bool named = settings.has_allow && std::any_of(settings.allow.begin(), settings.allow.end(),
-                                                       [](const AllowEntry& e) { return e.role > Role::viewer; });
+  const bool named = settings.has_allow &&
+                     std::ranges::any_of(settings.allow, [](const AllowEntry& e) { return e.role > Role::viewer; });
   return named ? settings.max_clients / 10 : 0;
 }
 

@@ -134,7 +134,7 @@ void Listener::take_socket(Listener& other) {
 }
 
 bool Listener::serves(ClientId client) const {
-  return std::any_of(open_.begin(), open_.end(), [&](const auto& each) { return each->client() == client; });
+  return std::ranges::any_of(open_, [&](const auto& each) { return each->client() == client; });
 }
 
 void Listener::start(OnListening on_listening) {

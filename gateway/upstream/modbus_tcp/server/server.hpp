@@ -7,6 +7,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/noncopyable.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,15 +28,13 @@ class ClientRegistry;
 class Listener;
 struct ServerContext;
 
-class Server {
+class Server : boost::noncopyable {
  public:
   /// Copies the settings. Everything passed by reference must outlive the server.
   Server(boost::asio::io_context& io, Runtime& runtime, std::span<const ListenerSettings> listeners,
          ProcessImage& image, CommandPort& commands, ClientRegistry& clients, const Log& log,
          ServerReports reports = {});
   ~Server();
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
 
   /// Binds all listeners, then accepts as many clients as `descriptors` leaves room for (take_descriptors()). Throws
   /// std::runtime_error, and has then opened nothing.

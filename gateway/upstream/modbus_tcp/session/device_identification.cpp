@@ -14,14 +14,8 @@ constexpr std::size_t kHead =
     7;  // function, MEI type, code, conformity, more follows, next object id, number of objects
 
 std::uint8_t last_of_level(std::uint8_t code) {
-  switch (code) {
-    case 1:
-      return 0x02;
-    case 2:
-      return 0x7F;
-    default:
-      return 0xFF;
-  }
+  if (code == 1) return 0x02;
+  return code == 2 ? 0x7F : 0xFF;
 }
 
 void append(Pdu& pdu, const IdentificationObject& object) {
@@ -53,8 +47,8 @@ std::vector<IdentificationObject> identification_objects(const ProcessImage& ima
 
 Pdu answer_identification(const Request& request, const std::vector<IdentificationObject>& objects) {
   const auto function = static_cast<Byte>(request.function);
-  const auto asked = std::find_if(objects.begin(), objects.end(),
-                                  [&](const IdentificationObject& each) { return each.id == request.object; });
+  const auto asked =
+      std::ranges::find_if(objects, [&](const IdentificationObject& each) { return each.id == request.object; });
   Pdu pdu{function, kDeviceIdentification, request.identification, kConformity, 0, 0, 0};
   if (request.identification == kIndividual) {
     if (asked == objects.end()) return exception_pdu(function, ModbusException::illegal_data_address);

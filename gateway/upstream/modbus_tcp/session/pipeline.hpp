@@ -4,6 +4,7 @@
 // Never knows bytes on the stream: frames come in, PDUs go out.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -18,7 +19,7 @@
 
 namespace axisgate::modbus_tcp {
 
-class Pipeline {
+class Pipeline : boost::noncopyable {
  public:
   using Emit = std::function<void(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply)>;
   /// `on_result` is called with the number of a request whose write, or whose object, has ended, never from inside
@@ -28,8 +29,6 @@ class Pipeline {
   Pipeline(const SessionContext& context, Role role, std::shared_ptr<Client> client, Instant now, Emit emit,
            OnResult on_result);
   ~Pipeline();
-  Pipeline(const Pipeline&) = delete;
-  Pipeline& operator=(const Pipeline&) = delete;
 
   [[nodiscard]] std::size_t under_way() const { return entries_.size(); }
   /// Only while under_way() < kMaxPipelined. `came`: it waits since then, in its socket perhaps.

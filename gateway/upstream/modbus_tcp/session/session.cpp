@@ -5,6 +5,7 @@
 #include <cassert>
 #include <utility>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/session/pipeline.hpp"
 #include "gateway/upstream/modbus_tcp/wire/rtu_frame.hpp"
@@ -20,61 +21,26 @@ std::shared_ptr<Client> join(const SessionContext& context, const Peer& peer, In
 
 }  // namespace
 
-class Session::Impl {
- public:
-  Impl(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output)
-      : context_(context),
-        client_(join(context, peer, now)),
-        on_output_(std::move(on_output)),
-        pipeline_(
-            context, peer.role, client_, now,
-            [this](std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) { put_reply(transaction, unit, pdu); },
-            [this](std::uint64_t number, const Outcome& outcome) { on_result(number, outcome); }),
-        now_(now),
-        active_at_(now) {}
+Session::Session(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output)
+    : context_(context),
+      client_(join(context, peer, now)),
+      on_output_(std::move(on_output)),
+      pipeline_(std::make_unique<Pipeline>(
+          context, peer.role, client_, now,
+          [this](std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) { put_reply(transaction, unit, pdu); },
+          [this](std::uint64_t number, const Outcome& outcome) { on_result(number, outcome); })),
+      now_(now),
+      active_at_(now) {}
 
-  void on_bytes(Bytes bytes, Instant now, Instant came);
-  void on_deadline(Instant now);
-  void on_closed(Instant now);
-  void close() { on_closed(now_); }
-  void take_output(std::size_t bytes, Instant now);
-  [[nodiscard]] Bytes output() const { return Bytes(output_).subspan(taken_); }
-  [[nodiscard]] bool wants_input() const { return !over() && has_room() && output().empty(); }
-  [[nodiscard]] bool finished() const { return why_ != CloseReason::none && pipeline_.under_way() == 0; }
-  [[nodiscard]] CloseReason why_finished() const { return why_; }
-  [[nodiscard]] Instant next_deadline() const;
-  [[nodiscard]] ClientId client() const { return client_->id; }
+Session::~Session() { on_closed(now_); }
 
- private:
-  [[nodiscard]] bool over() const { return why_ != CloseReason::none || closed_; }
-  [[nodiscard]] bool has_room() const { return pipeline_.under_way() + replies_waiting_ < kMaxPipelined; }
-  void name_rtu_client(Bytes first);
-  void take_requests();
-  void put_reply(std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu);
-  void on_result(std::uint64_t number, const Outcome& outcome);
-  [[nodiscard]] Instant part_deadline() const;
-  [[nodiscard]] Instant reply_deadline() const;
-  [[nodiscard]] Instant idle_deadline() const;
+bool Session::finished() const { return why_ != CloseReason::none && pipeline_->under_way() == 0; }
 
-  SessionContext context_;
-  std::shared_ptr<Client> client_;
-  std::function<void()> on_output_;
-  MbapFramer framer_;
-  Pipeline pipeline_;
-  std::vector<Byte> output_;
-  std::size_t taken_ = 0;            // bytes of output_
-  std::size_t replies_waiting_ = 0;  // replies put into output_ since it was last empty
-  Instant now_;                      // of the last call
-  Instant came_ = kNever;            // at the latest, what was read last
-  Instant part_since_ = kNever;      // first byte of a request that is not whole yet
-  Instant reply_since_ = kNever;     // first byte of output_ that is not taken yet
-  Instant active_at_;                // last whole request, or last reply taken
-  CloseReason why_ = CloseReason::none;
-  bool closed_ = false;
-  bool is_new_ = true;  // nothing has come yet
-};
+ClientId Session::client() const { return client_->id; }
 
-void Session::Impl::on_bytes(Bytes bytes, Instant now, Instant came) {
+bool Session::has_room() const { return pipeline_->under_way() + replies_waiting_ < kMaxPipelined; }
+
+void Session::on_bytes(Bytes bytes, Instant now, Instant came) {
   if (over()) return;
   now_ = now;
   came_ = came;
@@ -84,14 +50,14 @@ void Session::Impl::on_bytes(Bytes bytes, Instant now, Instant came) {
 }
 
 /// What it asks is no Modbus-TCP, and is answered as such: but whoever set it up is told what to change.
-void Session::Impl::name_rtu_client(Bytes first) {
+void Session::name_rtu_client(Bytes first) {
   if (!is_rtu_request(first)) return;
   context_.log.write(LogLevel::warning, "modbus",
                      client_->life->name + " sends Modbus RTU frames over TCP: set it to Modbus TCP");
 }
 
 /// As many as there is room for; the rest stays with the framer until replies were taken.
-void Session::Impl::take_requests() {
+void Session::take_requests() {
   Frame frame;
   while (!over() && has_room()) {
     const MbapFramer::Verdict verdict = framer_.next(frame);
@@ -109,13 +75,13 @@ void Session::Impl::take_requests() {
       return;
     }
     active_at_ = now_;
-    pipeline_.accept(frame, now_, now_ - came_ < kLongWait ? now_ : came_);
+    pipeline_->accept(frame, now_, now_ - came_ < kLongWait ? now_ : came_);
   }
   // What is kept now waits for us, not for the client.
   part_since_ = kNever;
 }
 
-void Session::Impl::put_reply(std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) {
+void Session::put_reply(std::uint16_t transaction, std::uint8_t unit, const Pdu& pdu) {
   const std::size_t at = output_.size();
   output_.resize(at + kMbapSize + pdu.size());
   const auto head = std::span(output_).subspan(at);
@@ -127,14 +93,14 @@ void Session::Impl::put_reply(std::uint16_t transaction, std::uint8_t unit, cons
   if (reply_since_ == kNever) reply_since_ = now_;
 }
 
-void Session::Impl::on_result(std::uint64_t number, const Outcome& outcome) {
+void Session::on_result(std::uint64_t number, const Outcome& outcome) {
   if (context_.runtime != nullptr) now_ = context_.runtime->now();
-  pipeline_.conclude(number, outcome, now_);
+  pipeline_->conclude(number, outcome, now_);
   take_requests();
   if (on_output_) on_output_();
 }
 
-void Session::Impl::take_output(std::size_t bytes, Instant now) {
+void Session::take_output(std::size_t bytes, Instant now) {
   assert(bytes <= output().size());
   now_ = now;
   taken_ += bytes;
@@ -147,33 +113,33 @@ void Session::Impl::take_output(std::size_t bytes, Instant now) {
   if (!closed_) take_requests();
 }
 
-Instant Session::Impl::part_deadline() const {
+Instant Session::part_deadline() const {
   return part_since_ == kNever ? kNever : part_since_ + context_.settings.request_deadline;
 }
 
-Instant Session::Impl::reply_deadline() const {
+Instant Session::reply_deadline() const {
   return reply_since_ == kNever ? kNever : reply_since_ + context_.settings.request_deadline;
 }
 
-Instant Session::Impl::idle_deadline() const {
-  const bool busy = pipeline_.under_way() != 0 || !output().empty();
+Instant Session::idle_deadline() const {
+  const bool busy = pipeline_->under_way() != 0 || !output().empty();
   return busy || context_.settings.idle_timeout == Duration::zero() ? kNever
                                                                     : active_at_ + context_.settings.idle_timeout;
 }
 
-Instant Session::Impl::next_deadline() const {
+Instant Session::next_deadline() const {
   if (closed_) return kNever;
   if (why_ != CloseReason::none) return reply_deadline();
-  return std::min({part_deadline(), reply_deadline(), idle_deadline(), pipeline_.next_deadline()});
+  return std::min({part_deadline(), reply_deadline(), idle_deadline(), pipeline_->next_deadline()});
 }
 
-void Session::Impl::on_deadline(Instant now) {
+void Session::on_deadline(Instant now) {
   now_ = now;
   if (closed_) return;
-  pipeline_.on_deadline(now);
+  pipeline_->on_deadline(now);
   if (reply_deadline() <= now) {
     // A client that takes no replies gets no more of them either.
-    pipeline_.abandon();
+    pipeline_->abandon();
     output_.clear();
     taken_ = 0;
     reply_since_ = kNever;
@@ -187,42 +153,24 @@ void Session::Impl::on_deadline(Instant now) {
   }
 }
 
-void Session::Impl::on_closed(Instant now) {
+void Session::on_closed(Instant now) {
   if (closed_) return;
   closed_ = true;
   now_ = now;
-  pipeline_.abandon();
+  pipeline_->abandon();
   if (const auto gone = context_.clients.disconnect(client_, now)) context_.commands.client_gone(*gone);
 }
 
 std::string_view text(CloseReason why) {
-  switch (why) {
-    case CloseReason::none:
-      return "closed by the client";
-    case CloseReason::malformed:
-      return "malformed frame";
-    case CloseReason::request_incomplete:
-      return "request not complete in time";
-    case CloseReason::reply_not_taken:
-      return "reply not taken in time";
-    case CloseReason::idle:
-      return "idle";
-  }
-  return {};
+  static constexpr auto kNames = names_of<CloseReason>({
+      {CloseReason::none, "closed by the client"},
+      {CloseReason::malformed, "malformed frame"},
+      {CloseReason::request_incomplete, "request not complete in time"},
+      {CloseReason::reply_not_taken, "reply not taken in time"},
+      {CloseReason::idle, "idle"},
+  });
+  static_assert(kNames.has_all_to(CloseReason::idle));
+  return kNames.of(why);
 }
-
-Session::Session(const SessionContext& context, const Peer& peer, Instant now, std::function<void()> on_output)
-    : impl_(std::make_unique<Impl>(context, peer, now, std::move(on_output))) {}
-Session::~Session() { impl_->close(); }
-void Session::on_bytes(Bytes bytes, Instant now, Instant came) { impl_->on_bytes(bytes, now, came); }
-void Session::on_deadline(Instant now) { impl_->on_deadline(now); }
-void Session::on_closed(Instant now) { impl_->on_closed(now); }
-Bytes Session::output() const { return impl_->output(); }
-void Session::take_output(std::size_t bytes, Instant now) { impl_->take_output(bytes, now); }
-bool Session::wants_input() const { return impl_->wants_input(); }
-bool Session::finished() const { return impl_->finished(); }
-ClientId Session::client() const { return impl_->client(); }
-CloseReason Session::why_finished() const { return impl_->why_finished(); }
-Instant Session::next_deadline() const { return impl_->next_deadline(); }
 
 }  // namespace axisgate::modbus_tcp

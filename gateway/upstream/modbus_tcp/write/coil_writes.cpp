@@ -19,9 +19,7 @@ constexpr std::array kOrder{Command::quick_stop,  Command::disable,       Comman
 /// The two jog coils ask for two things together, and each of the others for one at most.
 using Acting = boost::container::static_vector<Command, kCoils + 1>;
 
-bool has(const Acting& acting, Command command) {
-  return std::find(acting.begin(), acting.end(), command) != acting.end();
-}
+bool has(const Acting& acting, Command command) { return std::ranges::find(acting, command) != acting.end(); }
 
 /// The lowest of the coils that ask for a start.
 std::uint16_t first_start(const Acting& acting) {
@@ -31,7 +29,7 @@ std::uint16_t first_start(const Acting& acting) {
   return first;
 }
 
-bool any_of(const Acting& acting, bool (*is)(Command)) { return std::any_of(acting.begin(), acting.end(), is); }
+bool any_of(const Acting& acting, bool (*is)(Command)) { return std::ranges::any_of(acting, is); }
 
 /// What a stop in the same request drops: every start, and the enable that a quick stop or a disable contradicts.
 bool dropped_by_stop(Command command, const Acting& acting) {
@@ -187,8 +185,7 @@ Planned plan_coil_write(const Request& request, const UnitView& view, const Onlo
   LastWords words = writing.own;
   const Asked asked = ask(request, first->offset, axis, writing, rows, edges, words);
   // Two starts at once: no one can say which motion was meant.
-  if (std::count_if(asked.acting.begin(), asked.acting.end(), asks_to_move) > 1)
-    return refuse(Errc::bad_value, first_start(asked.acting));
+  if (std::ranges::count_if(asked.acting, asks_to_move) > 1) return refuse(Errc::bad_value, first_start(asked.acting));
 
   WritePlan plan;
   plan.axis = axis.number;

@@ -26,28 +26,14 @@ struct MailboxWrite {
 MailboxWrite write_mailbox(const RowWrites& found, const Mailbox& before) {
   MailboxWrite write{before};
   Mailbox& box = write.mailbox;
-  for (const RowWrite& each : found.rows) {
-    const auto word = static_cast<std::uint16_t>(each.value);
-    switch (each.row->source) {
-      case Source::object_request:
-        box.request = word;
-        break;
-      case Source::object_index:
-        box.index = word;
-        break;
-      case Source::object_subindex:
-        box.subindex = word;
-        break;
-      case Source::object_size:
-        box.size = word;
-        break;
-      case Source::object_data:
-        box.data = static_cast<std::uint32_t>(each.value);
-        break;
-      default:
-        break;
-    }
-  }
+  const auto take = [&found]<class Number>(Source source, Number& into) {
+    if (const RowWrite* const row = found.of(source)) into = static_cast<Number>(row->value);
+  };
+  take(Source::object_request, box.request);
+  take(Source::object_index, box.index);
+  take(Source::object_subindex, box.subindex);
+  take(Source::object_size, box.size);
+  take(Source::object_data, box.data);
   write.requested = found.of(Source::object_request) != nullptr && box.request != 0;
   if (!write.requested) return write;
   if (box.subindex > UINT8_MAX)
