@@ -48,7 +48,7 @@ std::string DdsClients::name_of(const Guid& writer) const {
 
 std::size_t DdsClients::size() const {
   return static_cast<std::size_t>(
-      std::count_if(clients_.begin(), clients_.end(), [](const auto& each) { return each.second.life != nullptr; }));
+      std::ranges::count_if(clients_, [](const auto& each) { return each.second.life != nullptr; }));
 }
 
 std::shared_ptr<ClientLife> DdsClients::new_life(const Guid& writer) {
@@ -63,7 +63,7 @@ std::shared_ptr<ClientLife> DdsClients::new_life(const Guid& writer) {
 
 std::size_t DdsClients::beating_alone() const {
   return static_cast<std::size_t>(
-      std::count_if(clients_.begin(), clients_.end(), [](const auto& each) { return each.second.beats_alone; }));
+      std::ranges::count_if(clients_, [](const auto& each) { return each.second.beats_alone; }));
 }
 
 // Those that beat alone take nobody's.
@@ -126,7 +126,7 @@ DdsClient& DdsClients::beating(const Guid& writer, bool is_new, Instant now) {
 /// Of those that beat alone the one that was heard longest ago is forgotten.
 void DdsClients::make_room_to_beat() {
   if (beating_alone() < kMaxBeatsBefore) return;
-  const auto longest = std::min_element(clients_.begin(), clients_.end(), [](const auto& a, const auto& b) {
+  const auto longest = std::ranges::min_element(clients_, [](const auto& a, const auto& b) {
     return std::tuple(!a.second.beats_alone, a.second.returns_by) <
            std::tuple(!b.second.beats_alone, b.second.returns_by);
   });
@@ -138,8 +138,7 @@ bool DdsClients::makes_way(const DdsClient& client) const {
 }
 
 bool DdsClients::owns(ClientId client) const {
-  return std::any_of(image_.axes().begin(), image_.axes().end(),
-                     [&](const auto& axis) { return axis->lease.owned_by(client); });
+  return std::ranges::any_of(image_.axes(), [&](const auto& axis) { return axis->lease.owned_by(client); });
 }
 
 /// Of those that make way the one that was heard longest ago is no client any more, until it asks again.
@@ -278,8 +277,7 @@ void DdsClients::remember_held(const Guid& writer, DdsClient& client) {
 }
 
 void DdsClients::recall_held(const Guid& writer, DdsClient& client) {
-  const auto found =
-      std::find_if(held_before_.begin(), held_before_.end(), [&](const auto& each) { return each.first == writer; });
+  const auto found = std::ranges::find_if(held_before_, [&](const auto& each) { return each.first == writer; });
   if (found == held_before_.end()) return;
   client.held = std::move(found->second);
   held_before_.erase(found);

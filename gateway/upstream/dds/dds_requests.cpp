@@ -50,47 +50,36 @@ struct DdsRequests::Run {
   }
 };
 
-DdsRequests::DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, DdsClients& clients, const SignsOfLife& signs,
-                         const Namesakes& namesakes, StopOrder& stop_order, ReplyQueue& replies,
-                         std::function<void()> wake, TellLine tell)
-    : settings_(settings),
-      units_(units),
-      image_(image),
-      commands_(commands),
+DdsRequests::DdsRequests(RequestContext with, DdsClients& clients, ReplyQueue& replies, std::function<void()> wake)
+    : with_(std::move(with)),
       clients_(clients),
-      signs_(signs),
-      namesakes_(namesakes),
-      stop_order_(stop_order),
       replies_(replies),
       wake_(std::move(wake)),
-      tell_(std::move(tell)),
       memory_(RequestBounds{}, kRequestsKept) {}
+
+const DdsUnits& RequestContext::units_of(AxisNumber axis) const {
+  static const DdsUnits kUsual;
+  const auto found = units.find(axis);
+  return found == units.end() ? kUsual : found->second;
+}
 
 // --- Taking a request ------------------------------------------------------------------------------------------------
 
 bool DdsRequests::is_for_us(const GatewayId& gateway, const Guid& writer, bool lets_go, Instant now) {
-  switch (addressee(gateway, settings_.gateway)) {
-    case Addressee::ours:
-    case Addressee::half:
-      return true;
-    case Addressee::other:
-      return false;
-    case Addressee::nobody:
-      break;
-  }
+  const Addressee whose = addressee(gateway, with_.settings.gateway);
+  if (whose != Addressee::nobody) return whose != Addressee::other;
   // A stop too many is the smaller harm.
   if (!lets_go) {
     tell(writer,
          fmt::format("a request for gateway \"{}\", key {:08x}, is not answered: this one is \"{}\", key {:08x}",
-                     gateway.name, gateway.key, settings_.gateway.name, settings_.gateway.key),
+                     gateway.name, gateway.key, with_.settings.gateway.name, with_.settings.gateway.key),
          now);
   }
   return lets_go;
 }
 
 DdsRequests::Admitted DdsRequests::admit(const Asked& asked, Instant now) {
-  if (!settings_.commands) return NotAdmitted{dds_result(Errc::role_forbidden)};
+  if (!with_.settings.commands) return NotAdmitted{dds_result(Errc::role_forbidden)};
   // Nor is it remembered, or a sign of life: whoever was cut off may ask once more.
   if (!asked.fresh && !asked.lets_go) return NotAdmitted{dds_result(Errc::never_started)};
   const RequestKey& key = asked.key;
@@ -121,8 +110,8 @@ WriteBatch DdsRequests::new_batch(std::shared_ptr<const ClientLife> life, bool f
   batch.role = life->role;
   batch.life = std::move(life);
   batch.renews = batch.reclaims = fresh;
-  batch.start_by = now + settings_.start_deadline;
-  batch.answer_by = now + settings_.reply_deadline;
+  batch.start_by = now + with_.settings.start_deadline;
+  batch.answer_by = now + with_.settings.reply_deadline;
   return batch;
 }
 
@@ -130,9 +119,9 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
   const std::string_view what = text(Command{asked.command});
   const bool exempt = lets_go(asked);
   if (!is_for_us(asked.gateway, asked.writer, exempt, now)) return;
-  const bool named = asked.gateway == settings_.gateway;
+  const bool named = asked.gateway == with_.settings.gateway;
   if (!named && !exempt) return refuse(asked, what, {dds_result(Errc::bad_value)}, now);
-  const bool fresh = signs_.fresh(asked.written, asked.received, now);
+  const bool fresh = with_.signs.fresh(asked.written, asked.received, now);
   const Admitted admitted = admit({.key = key_of(asked),
                                    .command = asked.command,
                                    .strength = asked.strength,
@@ -142,11 +131,11 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
                                   now);
   if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(asked, what, *why, now);
   const auto& life = std::get<std::shared_ptr<const ClientLife>>(admitted);
-  if (!exempt && stop_order_.overtaken(asked.axis, asked.received)) {
+  if (!exempt && with_.stop_order.overtaken(asked.axis, asked.received)) {
     press_in_vain(asked);
     return end(asked, what, Errc::dropped_by_stop, now);
   }
-  const AxisImage* const axis = image_.find(asked.axis);
+  const AxisImage* const axis = with_.image.find(asked.axis);
 
   // Only the stop or the release is carried out of what is too old, or not surely meant for us.
   CommandRecord record = asked;
@@ -162,19 +151,18 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
     held = found != client->held.end() && found->second.direction == Command{record.command};
   }
   // Of a stop or a release it is what stands beside it that is refused.
-  const bool begins = namesakes_.taken() && axis != nullptr && begins_beside(record, *axis);
-  if (namesakes_.taken() && (starts(record, held) || (begins && !exempt))) return end(record, what, kNameTaken, now);
+  const bool begins = with_.namesakes.taken() && axis != nullptr && begins_beside(record, *axis);
+  if (with_.namesakes.taken() && (starts(record, held) || (begins && !exempt)))
+    return end(record, what, kNameTaken, now);
   if (begins) record.mask = 0;
-  static const DdsUnits kUsual;
-  const auto units = units_.find(record.axis);
-  PlannedCommand planned = plan_command(record, new_batch(life, fresh && named, now), axis,
-                                        units == units_.end() ? kUsual : units->second, held);
+  PlannedCommand planned =
+      plan_command(record, new_batch(life, fresh && named, now), axis, with_.units_of(record.axis), held);
   if (const auto* const refused = std::get_if<Errc>(&planned)) return end(record, what, *refused, now);
   auto& plan = std::get<CommandPlan>(planned);
   if (record.request_id == 0) plan.afterwards = Errc::bad_value;
   if (record.mask != asked.mask && !begins) plan.afterwards = Errc::never_started;
   press(record, axis, held);
-  if (stops(record)) stop_order_.stopped(record.axis, record.received);
+  if (stops(record)) with_.stop_order.stopped(record.axis, record.received);
   // Where the participant has written objects of this axis first, by its other writer, that one makes way.
   const auto& owner = axis->lease.owner;
   if (client != nullptr && owner && clients_.asks_for_objects(*owner, *life)) client->life->goes_on_for = owner->id;
@@ -188,16 +176,16 @@ void DdsRequests::on_command(const CommandRecord& asked, Instant now) {
 void DdsRequests::on_object(const ObjectRequestRecord& record, Instant now) {
   const std::string_view what = record.write ? "a write of an object" : "";
   if (!is_for_us(record.gateway, record.writer, false, now)) return;
-  if (record.gateway != settings_.gateway) return refuse(record, what, {dds_result(Errc::bad_value)}, now);
-  const bool fresh = signs_.fresh(record.written, record.received, now);
+  if (record.gateway != with_.settings.gateway) return refuse(record, what, {dds_result(Errc::bad_value)}, now);
+  const bool fresh = with_.signs.fresh(record.written, record.received, now);
   const Admitted admitted = admit({.key = key_of(record), .fresh = fresh}, now);
   if (const auto* const why = std::get_if<NotAdmitted>(&admitted)) return refuse(record, what, *why, now);
-  if (record.write && stop_order_.overtaken(record.axis, record.received))
+  if (record.write && with_.stop_order.overtaken(record.axis, record.received))
     return end(record, what, Errc::dropped_by_stop, now);
   // Nobody knows here what an object does: it may enable, or start.
-  if (record.write && namesakes_.taken()) return end(record, what, kNameTaken, now);
+  if (record.write && with_.namesakes.taken()) return end(record, what, kNameTaken, now);
   auto life = std::get<std::shared_ptr<const ClientLife>>(admitted);
-  const AxisImage* const axis = image_.find(record.axis);
+  const AxisImage* const axis = with_.image.find(record.axis);
   // Objects are asked for by a writer of their own: where its participant commands the axis by another, it is that
   // client who writes.
   if (axis != nullptr && record.write) {
@@ -247,8 +235,8 @@ void DdsRequests::tell_refused(const Guid& writer, AxisNumber axis, std::string_
 }
 
 void DdsRequests::tell(const Guid& writer, const std::string& what, Instant now) {
-  if (!tell_ || !refused_lines_.takes(now)) return;
-  tell_(clients_.name_of(writer) + ": " + what + left_out_text(refused_lines_.left_out()));
+  if (!with_.tell || !refused_lines_.takes(now)) return;
+  with_.tell(clients_.name_of(writer) + ": " + what + left_out_text(refused_lines_.left_out()));
 }
 
 // --- Carrying it out -------------------------------------------------------------------------------------------------
@@ -261,7 +249,7 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
       const auto self = run->of.lock();
       if (self == nullptr) return;  // nobody is there to be told, nor to ask for the rest
       BatchResult so_far = result;
-      if (so_far.outcome.code == Errc::ok && run->stopped(self->stop_order_, self->image_))
+      if (so_far.outcome.code == Errc::ok && run->stopped(self->with_.stop_order, self->with_.image))
         so_far.outcome = refusal(Errc::dropped_by_stop);
       const auto end = carry_on(run, so_far);
       if (!end) return;
@@ -277,9 +265,9 @@ std::optional<BatchResult> DdsRequests::carry_on(const std::shared_ptr<Run>& run
 }
 
 void DdsRequests::start(AxisNumber axis, CommandPlan plan, Done done) {
-  const auto run = std::make_shared<Run>(Run{self_, commands_, axis, std::move(plan), std::move(done)});
-  run->stops = stop_order_.count(axis);
-  if (const AxisImage* const there = image_.find(axis)) run->since = there->record.now();
+  const auto run = std::make_shared<Run>(Run{self_, with_.commands, axis, std::move(plan), std::move(done)});
+  run->stops = with_.stop_order.count(axis);
+  if (const AxisImage* const there = with_.image.find(axis)) run->since = there->record.now();
   replies_.begin();
   const auto result = carry_on(run, {});
   if (!result) return;
@@ -299,13 +287,7 @@ void DdsRequests::reply(const CommandRecord& record, std::uint8_t result, std::u
 }
 
 void DdsRequests::reply(const ObjectRequestRecord& record, std::uint8_t result, std::uint32_t detail) {
-  ObjectReplyRecord refusal;
-  refusal.axis = record.axis;
-  refusal.request_id = record.request_id;
-  refusal.writer = record.writer;
-  refusal.result = result;
-  refusal.detail = detail;
-  replies_.add(refusal);
+  replies_.add(ObjectReplyRecord{record.axis, record.request_id, record.writer, result, detail, 0, {}});
 }
 
 // --- Jog -------------------------------------------------------------------------------------------------------------
@@ -330,7 +312,7 @@ void DdsRequests::press_in_vain(const CommandRecord& record) {
 
 Outcome DdsRequests::of_jog(const CommandRecord& record, bool held, const Outcome& outcome) {
   DdsClient* const client = clients_.find(record.writer);
-  const AxisImage* const axis = image_.find(record.axis);
+  const AxisImage* const axis = with_.image.find(record.axis);
   if (client == nullptr || axis == nullptr) return outcome;
   const auto found = client->held.find(record.axis);
   if (found == client->held.end()) return outcome;

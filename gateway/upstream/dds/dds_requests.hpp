@@ -5,6 +5,7 @@
 // of room. Never repeats anything.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <functional>
 #include <map>
 #include <memory>
@@ -26,14 +27,24 @@ namespace axisgate::dds {
 using UnitsOfAxes = std::map<AxisNumber, DdsUnits>;
 using TellLine = std::function<void(const std::string&)>;
 
-class DdsRequests {
+/// What requests of DDS writers and of ROS 2 nodes look at and go through. All of it outlives them.
+struct RequestContext {
+  const DdsSettings& settings;
+  const UnitsOfAxes& units;
+  const ProcessImage& image;
+  CommandPort& commands;
+  const SignsOfLife& signs;
+  const Namesakes& namesakes;
+  StopOrder& stop_order;
+  TellLine tell;  ///< a line for the log, of what is refused
+
+  [[nodiscard]] const DdsUnits& units_of(AxisNumber axis) const;
+};
+
+class DdsRequests : boost::noncopyable {
  public:
-  /// `wake`: a reply has come that nobody waits for in this turn. `tell`: a line for the log, of what is refused here.
-  DdsRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              DdsClients& clients, const SignsOfLife& signs, const Namesakes& namesakes, StopOrder& stop_order,
-              ReplyQueue& replies, std::function<void()> wake, TellLine tell);
-  DdsRequests(const DdsRequests&) = delete;
-  DdsRequests& operator=(const DdsRequests&) = delete;
+  /// `wake`: a reply has come that nobody waits for in this turn.
+  DdsRequests(RequestContext with, DdsClients& clients, ReplyQueue& replies, std::function<void()> wake);
 
   void on_command(const CommandRecord& record, Instant now);
   void on_object(const ObjectRequestRecord& record, Instant now);
@@ -83,17 +94,10 @@ class DdsRequests {
   void tell_refused(const Guid& writer, AxisNumber axis, std::string_view what, std::uint8_t result, Instant now);
   void tell(const Guid& writer, const std::string& what, Instant now);
 
-  const DdsSettings& settings_;
-  const UnitsOfAxes& units_;
-  const ProcessImage& image_;
-  CommandPort& commands_;
+  RequestContext with_;
   DdsClients& clients_;
-  const SignsOfLife& signs_;
-  const Namesakes& namesakes_;
-  StopOrder& stop_order_;
   ReplyQueue& replies_;
   std::function<void()> wake_;
-  TellLine tell_;
   LineBucket refused_lines_;
   RequestMemory memory_;
   /// Callbacks hold it weakly: they may come when this is gone.

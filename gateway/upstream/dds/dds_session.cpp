@@ -35,10 +35,9 @@ struct DdsSession::Impl {
         identities(settings),
         clients(identities, signs, image, commands),
         namesakes(image),
-        requests(
-            settings, units, image, commands, clients, signs, namesakes, stop_order, replies, [this] { wake_up(); },
-            reports.line),
-        ros(settings, units, image, commands, signs, identities, namesakes, stop_order, reports.line),
+        requests({settings, units, image, commands, signs, namesakes, stop_order, reports.line}, clients, replies,
+                 [this] { wake_up(); }),
+        ros({settings, units, image, commands, signs, namesakes, stop_order, reports.line}, identities),
         events(ring),
         states(settings.min_period, settings.max_period) {
     add_axes(kLongAgo);

@@ -5,6 +5,7 @@
 // socket, a process or a DDS type, and never sends what it was not asked for by next().
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <memory>
 #include <optional>
 
@@ -40,15 +41,13 @@ struct DdsDomainReports {
   std::function<void(const std::string&)> once{};
 };
 
-class DdsSession {
+class DdsSession : boost::noncopyable {
  public:
   /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Settings stay as they
   /// are; axes and units until take_axes().
   DdsSession(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
              std::function<void()> wake, DdsDomainReports reports = {});
   ~DdsSession();
-  DdsSession(const DdsSession&) = delete;
-  DdsSession& operator=(const DdsSession&) = delete;
 
   /// The image has other axes now, with these units. Of an axis that is gone one more state is sent: unknown, no value.
   void take_axes(const std::vector<AxisUnits>& units, Instant now);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -37,8 +38,7 @@ std::string wrong_with(const JointCommandsRecord& record) {
         joints, record.positions.size(), record.velocities.size(), record.efforts);
   }
   const auto infinite = [](double value) { return std::isinf(value); };
-  if (std::any_of(record.positions.begin(), record.positions.end(), infinite) ||
-      std::any_of(record.velocities.begin(), record.velocities.end(), infinite))
+  if (std::ranges::any_of(record.positions, infinite) || std::ranges::any_of(record.velocities, infinite))
     return "a number in it is infinite";
   std::set<std::string_view> seen;
   for (const std::string& name : record.names)
@@ -46,20 +46,12 @@ std::string wrong_with(const JointCommandsRecord& record) {
   return {};
 }
 
+/// None: a number that is no action.
 Command command_of(RosAction action) {
-  switch (action) {
-    case RosAction::enable:
-      return Command::enable;
-    case RosAction::disable:
-      return Command::disable;
-    case RosAction::quick_stop:
-      return Command::quick_stop;
-    case RosAction::fault_reset:
-      return Command::fault_reset;
-    case RosAction::home:
-      return Command::home;
-  }
-  return Command::none;
+  constexpr std::array kCommands{Command::enable, Command::disable, Command::quick_stop, Command::fault_reset,
+                                 Command::home};  // in the order of the actions
+  const auto number = static_cast<std::size_t>(action);
+  return number < kCommands.size() ? kCommands[number] : Command::none;
 }
 
 /// A motion is on that a stream may have asked for.
@@ -76,26 +68,13 @@ bool changes(Command command, const AxisImage& axis) {
 
 }  // namespace
 
-RosRequests::RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image,
-                         CommandPort& commands, const SignsOfLife& signs, const Identities& identities,
-                         const Namesakes& namesakes, StopOrder& stop_order, TellLine tell)
-    : settings_(settings),
-      units_(units),
-      image_(image),
-      commands_(commands),
-      signs_(signs),
-      identities_(identities),
-      namesakes_(namesakes),
-      stop_order_(stop_order),
-      tell_(std::move(tell)) {}
-
 RosRequests::Joint& RosRequests::joint_of(AxisNumber axis) {
   Joint& joint = joints_[axis];
   if (joint.life == nullptr) {
     joint.life = std::make_shared<ClientLife>();
     joint.life->id = kFirstRosClient + axis;
     // Whose sample may move it is judged before; none needs more.
-    joint.life->role = std::max(settings_.role, Role::operator_);
+    joint.life->role = std::max(with_.settings.role, Role::operator_);
     // No participant has this GUID prefix: nobody is of the same hand.
     joint.life->origin = {'r', 'o', 's', '2', static_cast<std::uint8_t>(axis >> 8U), static_cast<std::uint8_t>(axis)};
     joint.life->name = "ros2";
@@ -104,24 +83,18 @@ RosRequests::Joint& RosRequests::joint_of(AxisNumber axis) {
   return joint;
 }
 
-const DdsUnits& RosRequests::units_of(AxisNumber axis) const {
-  static const DdsUnits kUsual;
-  const auto found = units_.find(axis);
-  return found == units_.end() ? kUsual : found->second;
-}
-
 JointView RosRequests::view_of(const AxisImage& axis, const Joint& joint) const {
   const bool good = axis[Quantity::position_actual].valid;
   const double position =
-      units_of(axis.number).to_si(Quantity::position_actual, shown_value(axis, Quantity::position_actual));
+      with_.units_of(axis.number).to_si(Quantity::position_actual, shown_value(axis, Quantity::position_actual));
   // An angle of the motor: on an axis in metres, the way that it is there.
-  const double tolerance = settings_.sync_tolerance / (2 * std::numbers::pi) * units_of(axis.number).turn();
+  const double tolerance = with_.settings.sync_tolerance / (2 * std::numbers::pi) * with_.units_of(axis.number).turn();
   return joint_view(axis, good ? position : kNan, tolerance, joint.life->id);
 }
 
 std::map<std::string_view, const AxisImage*> RosRequests::axes_by_name() const {
   std::map<std::string_view, const AxisImage*> out;
-  for (const auto& axis : image_.axes()) out.emplace(axis->name, axis.get());
+  for (const auto& axis : with_.image.axes()) out.emplace(axis->name, axis.get());
   return out;
 }
 
@@ -133,8 +106,8 @@ WriteBatch RosRequests::new_batch(const Joint& joint, bool renews) const {
   batch.life = joint.life;
   batch.reclaims = true;
   batch.renews = batch.beats = renews;
-  batch.start_by = joint.newest + settings_.start_deadline;
-  batch.answer_by = joint.newest + settings_.reply_deadline;
+  batch.start_by = joint.newest + with_.settings.start_deadline;
+  batch.answer_by = joint.newest + with_.settings.reply_deadline;
   return batch;
 }
 
@@ -152,17 +125,17 @@ void RosRequests::on_link_down(Instant now) {
 
 void RosRequests::complain(const std::string& line, Instant now) {
   const auto told = complaints_.find(line);
-  if (!tell_ || (told != complaints_.end() && now - told->second < kToldAgainAfter) || !lines_.takes(now)) return;
+  if (!with_.tell || (told != complaints_.end() && now - told->second < kToldAgainAfter) || !lines_.takes(now)) return;
   if (complaints_.size() >= kMaxComplaints) complaints_.clear();
   complaints_[line] = now;
-  tell_(line + left_out_text(lines_.left_out()));
+  with_.tell(line + left_out_text(lines_.left_out()));
 }
 
 // --- joint_commands --------------------------------------------------------------------------------------------------
 
 void RosRequests::on_joint_commands(const JointCommandsRecord& record, Instant now) {
-  if (!settings_.commands || identities_.role_of(record.writer) < Role::operator_) return;
-  if (!signs_.fresh(record.written, record.received, now)) return complain(kTooOld, now);
+  if (!with_.settings.commands || identities_.role_of(record.writer) < Role::operator_) return;
+  if (!with_.signs.fresh(record.written, record.received, now)) return complain(kTooOld, now);
   if (const std::string wrong = wrong_with(record); !wrong.empty())
     return complain("a sample of joint_commands is refused as a whole: " + wrong, now);
   const auto axes = axes_by_name();
@@ -185,8 +158,8 @@ void RosRequests::take_target(const AxisImage& axis, double position, double vel
   if (is_velocity && std::isnan(velocity)) return;  // it leaves this axis alone, and is no sign of life for it
   Joint& joint = joint_of(axis.number);
   joint.newest = now;
-  if (stop_order_.overtaken(axis.number, from.received)) return;
-  const auto value = units_of(axis.number)
+  if (with_.stop_order.overtaken(axis.number, from.received)) return;
+  const auto value = with_.units_of(axis.number)
                          .to_register(is_velocity ? Quantity::target_velocity : Quantity::target_position,
                                       is_velocity ? velocity : position);
   if (!value) {
@@ -232,16 +205,16 @@ WriteBatch RosRequests::batch_of(const AxisImage& axis, const Joint& joint, cons
 // Until one waits for the drive: the callback goes on from there.
 void RosRequests::ask(AxisNumber number, std::optional<JointTarget> target) {
   while (target) {
-    const AxisImage* const axis = image_.find(number);
+    const AxisImage* const axis = with_.image.find(number);
     if (axis == nullptr) return;
     Joint& joint = joint_of(number);
     const WriteBatch batch = batch_of(*axis, joint, *target);
-    if (namesakes_.taken() && batch.command != Command::none) return refuse_start(*axis, joint);
+    if (with_.namesakes.taken() && batch.command != Command::none) return refuse_start(*axis, joint);
     const auto at_once =
-        commands_.submit(number, batch, [self = std::weak_ptr(self_), number](const BatchResult& result) {
+        with_.commands.submit(number, batch, [self = std::weak_ptr(self_), number](const BatchResult& result) {
           const auto here = self.lock();
           if (here == nullptr) return;
-          const AxisImage* const there = here->image_.find(number);
+          const AxisImage* const there = here->with_.image.find(number);
           if (there == nullptr) {
             here->joints_.erase(number);
             return;
@@ -259,7 +232,7 @@ void RosRequests::refuse_start(const AxisImage& axis, Joint& joint) {
   joint.stream.restart();
   static_cast<void>(joint.stream.on_result(Errc::never_started, view_of(axis, joint)));
   if (velocity_runs(axis)) halt(axis.number, joint);
-  complain(fmt::format("joint_commands starts nothing on {}: {} has our name", axis.name, namesakes_.text()),
+  complain(fmt::format("joint_commands starts nothing on {}: {} has our name", axis.name, with_.namesakes.text()),
            joint.newest);
 }
 
@@ -270,27 +243,28 @@ std::optional<JointTarget> RosRequests::take_result(const AxisImage& axis, Errc 
 }
 
 void RosRequests::submit_alone(AxisNumber axis, const WriteBatch& batch) {
-  static_cast<void>(commands_.submit(axis, batch, [](const BatchResult&) {}));
+  static_cast<void>(with_.commands.submit(axis, batch, [](const BatchResult&) {}));
 }
 
 // --- The topics of one axis ------------------------------------------------------------------------------------------
 
 void RosRequests::on_action(const RosActionRecord& record, Instant now) {
   const Command command = command_of(RosAction{record.action});
-  const AxisImage* const axis = image_.find(record.axis);
-  if (!settings_.commands || identities_.role_of(record.writer) < Role::operator_) return;
+  const AxisImage* const axis = with_.image.find(record.axis);
+  if (!with_.settings.commands || identities_.role_of(record.writer) < Role::operator_) return;
   if (axis == nullptr || command == Command::none) return;
   if (!axis->supports(command))
     return complain(fmt::format("ros2: {} of {}: this drive cannot do it", text(command), axis->name), now);
   const bool starts = command == Command::enable || command == Command::home;
-  const bool fresh = signs_.fresh(record.written, record.received, now);
+  const bool fresh = with_.signs.fresh(record.written, record.received, now);
   if (!is_stop(command) && !fresh) return complain(kTooOld, now);
-  if (starts && namesakes_.taken())
+  if (starts && with_.namesakes.taken())
     return complain(
-        fmt::format("ros2: {} of {} is refused: {} has our name", text(command), axis->name, namesakes_.text()), now);
+        fmt::format("ros2: {} of {} is refused: {} has our name", text(command), axis->name, with_.namesakes.text()),
+        now);
   if (is_stop(command)) {
-    stop_order_.stopped(record.axis, record.received);
-  } else if (stop_order_.overtaken(record.axis, record.received)) {
+    with_.stop_order.stopped(record.axis, record.received);
+  } else if (with_.stop_order.overtaken(record.axis, record.received)) {
     return complain(
         fmt::format("ros2: {} of {}: a stop that came after it was carried out first", text(command), axis->name), now);
   }
@@ -316,10 +290,10 @@ void RosRequests::home(AxisNumber number, Joint& joint, Instant now) {
   batch.claims = true;
   const auto done = [self = std::weak_ptr(self_), number, now](const BatchResult& result) {
     const auto here = self.lock();
-    const AxisImage* const axis = here == nullptr ? nullptr : here->image_.find(number);
+    const AxisImage* const axis = here == nullptr ? nullptr : here->with_.image.find(number);
     if (axis != nullptr && result.outcome.code == Errc::ok) here->heard(*axis, here->joint_of(number), now);
   };
-  const auto at_once = commands_.submit(number, batch, done);
+  const auto at_once = with_.commands.submit(number, batch, done);
   if (at_once) done(*at_once);
   if (!at_once || at_once->outcome.code == Errc::ok) joint.stream.restart();
 }

@@ -6,6 +6,7 @@
 // enables. Never replies: what is refused is an event or a line of the log.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,14 +29,9 @@ inline constexpr ClientId kFirstRosClient = kFirstDdsClient + (ClientId{1} << 62
 /// Complaints that are remembered, so that a stream does not fill the log with one of them.
 inline constexpr std::size_t kMaxComplaints = 64;
 
-class RosRequests {
+class RosRequests : boost::noncopyable {
  public:
-  /// `tell`: a line for the log, of what is refused here.
-  RosRequests(const DdsSettings& settings, const UnitsOfAxes& units, const ProcessImage& image, CommandPort& commands,
-              const SignsOfLife& signs, const Identities& identities, const Namesakes& namesakes, StopOrder& stop_order,
-              TellLine tell);
-  RosRequests(const RosRequests&) = delete;
-  RosRequests& operator=(const RosRequests&) = delete;
+  RosRequests(RequestContext with, const Identities& identities) : with_(std::move(with)), identities_(identities) {}
 
   void on_joint_commands(const JointCommandsRecord& record, Instant now);
   void on_action(const RosActionRecord& record, Instant now);
@@ -50,7 +46,6 @@ class RosRequests {
     Instant followed = kLongAgo;  ///< when the newest one of a stream that moves it came
   };
   [[nodiscard]] Joint& joint_of(AxisNumber axis);
-  [[nodiscard]] const DdsUnits& units_of(AxisNumber axis) const;
   [[nodiscard]] JointView view_of(const AxisImage& axis, const Joint& joint) const;
   [[nodiscard]] std::map<std::string_view, const AxisImage*> axes_by_name() const;
   [[nodiscard]] WriteBatch new_batch(const Joint& joint, bool renews) const;
@@ -68,15 +63,8 @@ class RosRequests {
   /// The same complaint again and again is one line a minute.
   void complain(const std::string& line, Instant now);
 
-  const DdsSettings& settings_;
-  const UnitsOfAxes& units_;
-  const ProcessImage& image_;
-  CommandPort& commands_;
-  const SignsOfLife& signs_;
+  RequestContext with_;
   const Identities& identities_;
-  const Namesakes& namesakes_;
-  StopOrder& stop_order_;
-  TellLine tell_;
   LineBucket lines_;
   std::map<std::string, Instant> complaints_;  ///< when each was logged last; at most kMaxComplaints
   std::map<AxisNumber, Joint> joints_;
