@@ -8,20 +8,15 @@
 #include <iostream>
 #include <memory>
 
-#include "gateway/commands/check_command.hpp"
 #include "gateway/commands/command_manual.hpp"
 #include "gateway/commands/command_words.hpp"
+#include "gateway/commands/commands.hpp"
 #include "gateway/commands/commission/commission_command.hpp"
 #include "gateway/commands/common/exit_codes.hpp"
 #include "gateway/commands/common/profile_folders.hpp"
-#include "gateway/commands/explain_command.hpp"
-#include "gateway/commands/map_command.hpp"
-#include "gateway/commands/profile_command.hpp"
-#include "gateway/commands/reload_command.hpp"
 #include "gateway/commands/run_command.hpp"
 #include "gateway/commands/scan/scan_command.hpp"
 #include "gateway/commands/top/top_command.hpp"
-#include "gateway/commands/topics_command.hpp"
 #include "gateway/manual/generate.hpp"
 
 namespace axisgate::commands {
@@ -49,6 +44,15 @@ struct Parsed {
 void add_profiles(CLI::App& command, Parsed& parsed,
                   const std::string& what = "folder of drive profiles, searched before the shipped ones") {
   command.add_option("--profiles", parsed.profiles, what)->check(CLI::Validator(no_folder, ""))->type_name("DIR");
+}
+
+/// An option whose value is a whole number; what it has at the beginning is its default.
+CLI::Option* add_number(CLI::App& command, const std::string& name, auto& value, int least, int most,
+                        const std::string& what) {
+  return command.add_option(name, value, what)
+      ->check(CLI::Range(least, most).description(""))
+      ->type_name("N")
+      ->capture_default_str();
 }
 
 /// A command that reads a configuration.
@@ -112,18 +116,10 @@ void add_top(CLI::App& app, Parsed& parsed) {
   command->add_option("HOST:PORT", parsed.top.endpoint, "the gateway's Modbus-TCP listener")->required();
   command->add_option("CONFIG", parsed.top.config, "its configuration file: axes are shown with their names");
   add_profiles(*command, parsed);
-  command->add_option("--interval", parsed.top.interval_ms, "milliseconds between two tables")
-      ->check(CLI::Range(50, 60000).description(""))
-      ->type_name("MS")
-      ->capture_default_str();
-  command->add_option("--seconds", parsed.top.seconds, "end after so long; 0: until Ctrl-C")
-      ->check(CLI::Range(0, 86400).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--count", parsed.top.count, "end after so many tables; 0: no such end")
-      ->check(CLI::Range(0, 1000000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+  add_number(*command, "--interval", parsed.top.interval_ms, 50, 60000, "milliseconds between two tables")
+      ->type_name("MS");
+  add_number(*command, "--seconds", parsed.top.seconds, 0, 86400, "end after so long; 0: until Ctrl-C");
+  add_number(*command, "--count", parsed.top.count, 0, 1000000, "end after so many tables; 0: no such end");
   command->add_flag("--plain", parsed.top.plain, "print one table after the other, for pipes and logs");
   command->add_flag_callback(
       "--once", [&parsed] { parsed.top.count = 1; },
@@ -210,10 +206,7 @@ void add_scan(CLI::App& app, Parsed& parsed) {
       ->type_name("N")
       ->capture_default_str();
   add_profiles(*command, parsed);
-  command->add_option("--timeout-ms", parsed.scan.timeout_ms, "how long each answer is waited for")
-      ->check(CLI::Range(2, 10000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+  add_number(*command, "--timeout-ms", parsed.scan.timeout_ms, 2, 10000, "how long each answer is waited for");
   command->add_option("--nodes", parsed.scan_nodes, "node-IDs to ask")
       ->check(CLI::Validator(scan_range_mistake, ""))
       ->type_name("A-B")

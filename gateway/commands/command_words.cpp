@@ -35,7 +35,7 @@ std::vector<std::string> options_of(const CLI::App& app) {
 
 CLI::Validator one_of(std::vector<std::string> words) {
   const auto judged = [words = std::move(words)](const std::string& value) {
-    const bool known = std::find(words.begin(), words.end(), value) != words.end();
+    const bool known = std::ranges::find(words, value) != words.end();
     return known ? std::string() : none_of(value, words);
   };
   return CLI::Validator(judged, "");
@@ -63,7 +63,7 @@ std::string wrong_command(const CLI::App& app, int argc, const char* const* argv
     const std::vector<std::string> known = commands_of(*at);
     if (known.empty()) break;
     const std::string word = argv[i];
-    if (std::find(known.begin(), known.end(), word) == known.end())
+    if (std::ranges::find(known, word) == known.end())
       return fmt::format("{0}: there is no command '{1}'{2} {0} --help lists them", path, word,
                          nearest(word, known) ? did_you_mean(word, known) : ";");
     at = at->get_subcommand(word);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/map_command.hpp"
+#include "gateway/commands/commands.hpp"
 
 #include <fmt/format.h>
 
@@ -59,8 +59,8 @@ listing::ListedMap listed(const config::LoadedConfig& loaded, const Listener& li
         map.axes.push_back(listed(bus.drives[d].axes[a], model.axes[a], bus.name));
     }
   }
-  std::sort(map.axes.begin(), map.axes.end(),
-            [](const listing::ListedAxis& a, const listing::ListedAxis& b) { return a.number < b.number; });
+  std::ranges::sort(map.axes,
+                    [](const listing::ListedAxis& a, const listing::ListedAxis& b) { return a.number < b.number; });
   return map;
 }
 
@@ -75,7 +75,7 @@ int run(const MapOptions& options) {
   const auto wanted = [&](const Listener& each) {
     return options.listener.empty() || address_text(each.host, each.port) == options.listener;
   };
-  const auto listener = std::find_if(listeners.begin(), listeners.end(), wanted);
+  const auto listener = std::ranges::find_if(listeners, wanted);
   if (listener == listeners.end()) {
     fmt::print(stderr, "{}: /modbus_tcp: no listener has \"listen\": \"{}\": give one of the configuration's\n",
                options.config, options.listener);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/profile_command.hpp"
+#include "gateway/commands/commands.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,14 +33,12 @@ bool has_place(const Profile& profile, const std::string& object, std::string_vi
 bool given(const Profile& profile, const QuantityRow& row, std::string_view protocol) {
   if (row.quantity == Quantity::error_code) return !profile.alarms.empty();  // made from the alarm table
   constexpr std::array kEmulated{Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode};
-  if (profile.state.is_virtual && std::find(kEmulated.begin(), kEmulated.end(), row.quantity) != kEmulated.end())
-    return true;
+  if (profile.state.is_virtual && std::ranges::find(kEmulated, row.quantity) != kEmulated.end()) return true;
   const profile::QuantitySpec* quantity = profile.find(row.quantity);
   if (quantity == nullptr) return false;
   const auto place = [&](const std::string& object) { return has_place(profile, object, protocol); };
-  return std::any_of(quantity->objects.begin(), quantity->objects.end(), place) ||
-         std::any_of(quantity->bits.begin(), quantity->bits.end(),
-                     [&](const profile::BitsSpec& bits) { return place(bits.object); });
+  return std::ranges::any_of(quantity->objects, place) ||
+         std::ranges::any_of(quantity->bits, [&](const profile::BitsSpec& bits) { return place(bits.object); });
 }
 
 void print_protocol(const Profile& profile, const std::string& protocol, const profile::ProtocolSpec& facts) {
@@ -53,8 +51,8 @@ void print_protocol(const Profile& profile, const std::string& protocol, const p
       missing.push_back(quantity.name);
     }
   }
-  const auto objects = std::count_if(profile.objects.begin(), profile.objects.end(),
-                                     [&](const profile::Object& object) { return object.places.contains(protocol); });
+  const auto objects = std::ranges::count_if(
+      profile.objects, [&](const profile::Object& object) { return object.places.contains(protocol); });
   fmt::print("  {:<14}{} objects, {} of {} quantities; {}\n", protocol, objects, count, kQuantityCount,
              facts.stops_by_itself() ? "stops by itself when the gateway dies"
                                      : "does not stop by itself when the gateway dies");
@@ -80,8 +78,8 @@ std::vector<config::ConfigFault> faults_of(const std::string& file, const profil
 }
 
 std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
   return text;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/reload_command.hpp"
+#include "gateway/commands/commands.hpp"
 
 #include <fmt/format.h>
 

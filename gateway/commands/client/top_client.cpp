@@ -23,7 +23,9 @@ constexpr Byte kReadHolding = 0x03;
 constexpr Byte kExceptionFlag = 0x80;
 constexpr std::array<Byte, 3> kIdentify{0x2B, 0x0E, 0x04};  // one object alone
 constexpr std::size_t kObjectHead = 9;                      // of the answer: up to the object's length
+constexpr std::size_t kRegistersHead = 2;                   // of the answer: function and byte count
 constexpr std::size_t kLargestPdu = 253;
+constexpr const char* kNoReply = "the answer is no Modbus-TCP reply to the request";
 
 }  // namespace
 
@@ -47,77 +49,65 @@ awaitable<std::string> TopClient::connect(std::string host, std::uint16_t port, 
   co_return std::string();
 }
 
-awaitable<ObjectRead> TopClient::identification(std::uint8_t object, Limit limit) {
-  ObjectRead result;
-  std::array<Byte, kHeader + 4> request{};
+awaitable<TopClient::Answer> TopClient::ask(std::vector<Byte> pdu, std::size_t longest, Limit limit) {
+  std::vector<Byte> request(kHeader);
   store_be16(request, 0, ++transaction_);
-  store_be16(request, 4, 5);
+  store_be16(request, 4, static_cast<std::uint16_t>(pdu.size() + 1));
   request[6] = kFlatMapUnit;
-  std::copy(kIdentify.begin(), kIdentify.end(), request.begin() + kHeader);
-  request[kHeader + kIdentify.size()] = object;
+  request.insert(request.end(), pdu.begin(), pdu.end());
 
   arm(limit);
+  Answer answer;
   auto [error, written] = co_await boost::asio::async_write(socket_, boost::asio::buffer(request), kAwait);
   std::array<Byte, kHeader> head{};
   if (!error) error = co_await receive(head);
-  std::vector<Byte> pdu;
   if (!error) {
     const std::size_t size = load_be16(head, 4);
     const bool mine = load_be16(head, 0) == transaction_ && load_be16(head, 2) == 0 && head[6] == kFlatMapUnit;
-    if (mine && size > 2 && size <= kLargestPdu + 1) {
-      pdu.resize(size - 1);
-      error = co_await receive(pdu);
+    if (mine && size > 2 && size <= longest + 1) {
+      answer.pdu.resize(size - 1);
+      error = co_await receive(answer.pdu);
     }
   }
   limit_timer_.cancel();
-  const bool refused = pdu.size() == 2 && pdu[0] == (kIdentify[0] | kExceptionFlag);
+  if (error) answer.problem = reason(error);
+  answer.refused = answer.pdu.size() == 2 && answer.pdu[0] == (pdu[0] | kExceptionFlag);
+  co_return answer;
+}
+
+awaitable<ObjectRead> TopClient::identification(std::uint8_t object, Limit limit) {
+  std::vector<Byte> request(kIdentify.begin(), kIdentify.end());
+  request.push_back(object);
+  const Answer answer = co_await ask(std::move(request), kLargestPdu, limit);
+  const std::vector<Byte>& pdu = answer.pdu;
   const bool answered = pdu.size() >= kObjectHead && pdu[0] == kIdentify[0] && pdu[kObjectHead - 2] == object &&
                         pdu.size() == kObjectHead + pdu[kObjectHead - 1];
-  if (error)
-    result.problem = reason(error);
-  else if (!refused && !answered)
-    result.problem = "the answer is no Modbus-TCP reply to the request";
+  ObjectRead result{{}, answer.problem};
+  if (result.problem.empty() && !answer.refused && !answered) result.problem = kNoReply;
+  if (!result.problem.empty())
+    close();
   else if (answered)
     result.text.assign(pdu.begin() + kObjectHead, pdu.end());
-  if (!result.problem.empty()) close();
   co_return result;
 }
 
 awaitable<RegistersRead> TopClient::read(std::uint16_t address, std::uint16_t count, Limit limit) {
-  RegistersRead result;
-  std::array<Byte, kHeader + 5> request{};
-  store_be16(request, 0, ++transaction_);
-  store_be16(request, 4, 6);
-  request[6] = kFlatMapUnit;
-  request[7] = kReadHolding;
-  store_be16(request, 8, address);
-  store_be16(request, 10, count);
-
-  arm(limit);
-  auto [error, written] = co_await boost::asio::async_write(socket_, boost::asio::buffer(request), kAwait);
-  std::array<Byte, kHeader + 2> head{};  // up to the byte count or the exception code
-  if (!error) error = co_await receive(head);
-  std::vector<Byte> data;
-  if (!error) {
-    const bool mine = load_be16(head, 0) == transaction_ && load_be16(head, 2) == 0 && head[6] == kFlatMapUnit;
-    const bool refused = head[7] == (kReadHolding | kExceptionFlag) && load_be16(head, 4) == 3;
-    const bool answered = head[7] == kReadHolding && head[8] == 2 * count && load_be16(head, 4) == 3 + head[8];
-    if (!mine || (!refused && !answered)) {
-      result.problem = "the answer is no Modbus-TCP reply to the request";
-    } else if (refused) {
-      result.exception = head[8];
-    } else {
-      data.resize(head[8]);
-      error = co_await receive(data);
-    }
-  }
-  limit_timer_.cancel();
-  if (error) result.problem = reason(error);
-  if (!result.connected()) {
+  std::vector<Byte> request(5);
+  request[0] = kReadHolding;
+  store_be16(request, 1, address);
+  store_be16(request, 3, count);
+  const std::size_t size = kRegistersHead + 2U * count;
+  const Answer answer = co_await ask(std::move(request), size, limit);
+  const std::vector<Byte>& pdu = answer.pdu;
+  const bool answered = pdu.size() == size && pdu[0] == kReadHolding && pdu[1] == 2 * count;
+  RegistersRead result{{}, 0, answer.problem};
+  if (result.connected() && !answer.refused && !answered) result.problem = kNoReply;
+  if (!result.connected())
     close();
-    co_return result;
-  }
-  for (std::size_t at = 0; at < data.size(); at += 2) result.registers.push_back(load_be16(data, at));
+  else if (answer.refused)
+    result.exception = pdu[1];
+  else
+    for (std::size_t at = kRegistersHead; at < size; at += 2) result.registers.push_back(load_be16(pdu, at));
   co_return result;
 }
 

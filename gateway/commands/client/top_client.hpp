@@ -47,6 +47,13 @@ class TopClient {
   void close();
 
  private:
+  struct Answer {
+    std::vector<Byte> pdu;  ///< empty: what came is none
+    bool refused = false;   ///< it is an exception
+    std::string problem;    ///< why nothing came
+  };
+  /// `longest`: an answer that is longer is none.
+  [[nodiscard]] boost::asio::awaitable<Answer> ask(std::vector<Byte> pdu, std::size_t longest, Limit limit);
   void arm(Limit limit);
   [[nodiscard]] std::string reason(const boost::system::error_code& error) const;
   [[nodiscard]] boost::asio::awaitable<boost::system::error_code> receive(std::span<Byte> into);

@@ -118,8 +118,8 @@ class Commissioning {
   [[nodiscard]] std::vector<AxisShown> axes_now() {
     std::vector<AxisShown> out;
     for (const model::AxisModel& axis : model_.axes) {
-      const bool state_known = std::all_of(axis.state_sources.begin(), axis.state_sources.end(),
-                                           [&](model::ObjectId id) { return model_.object(id).emulated || read(id); });
+      const bool state_known = std::ranges::all_of(
+          axis.state_sources, [&](model::ObjectId id) { return model_.object(id).emulated || read(id); });
       const AxisImage& image = *bench_.gateway().image().find(axis.number);
       out.push_back({axis.number, image.link_state, state_known, image.has(AxisInput::enabled)});
     }

@@ -29,8 +29,7 @@ std::int64_t looked_at(const model::Check& check, std::int64_t number) {
 }
 
 bool is_written(const model::Check& check, model::ObjectId id) {
-  return std::any_of(check.remedy.begin(), check.remedy.end(),
-                     [&](const model::ObjectWrite& write) { return write.object == id; });
+  return std::ranges::any_of(check.remedy, [&](const model::ObjectWrite& write) { return write.object == id; });
 }
 
 bool same(const model::Check& check, model::ObjectId id, std::int64_t one, std::int64_t other) {
@@ -59,14 +58,14 @@ std::vector<const model::Check*> to_ask(const std::vector<Finding>& found) {
 }
 
 bool leaves_bad(const std::vector<Finding>& found) {
-  return std::any_of(found.begin(), found.end(),
-                     [](const Finding& finding) { return finding.bad && finding.check->remedy.empty(); });
+  return std::ranges::any_of(found,
+                             [](const Finding& finding) { return finding.bad && finding.check->remedy.empty(); });
 }
 
 std::vector<model::ObjectId> objects_of(const model::DriveModel& model, const model::Check& check) {
   std::vector<model::ObjectId> out{check.bad.object};
   for (const model::ObjectWrite& write : check.remedy)
-    if (tells(model.object(write.object)) && std::find(out.begin(), out.end(), write.object) == out.end())
+    if (tells(model.object(write.object)) && std::ranges::find(out, write.object) == out.end())
       out.push_back(write.object);
   return out;
 }

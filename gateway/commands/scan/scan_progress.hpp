@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <boost/noncopyable.hpp>
 
 #include <cstdio>
 #include <string_view>
@@ -14,15 +15,13 @@
 
 namespace axisgate::commands {
 
-class ScanProgress {
+class ScanProgress : boost::noncopyable {
  public:
   static constexpr Duration kOnTerminal = std::chrono::milliseconds(100);
   static constexpr Duration kElsewhere = std::chrono::seconds(2);
 
   ScanProgress() : terminal_(::isatty(STDERR_FILENO) == 1) {}
   ~ScanProgress() { clear(); }
-  ScanProgress(const ScanProgress&) = delete;
-  ScanProgress& operator=(const ScanProgress&) = delete;
 
   void say(std::string_view line) {
     clear();

@@ -4,6 +4,7 @@
 // Never decides what is shown.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -18,12 +19,10 @@ namespace axisgate::commands {
 [[nodiscard]] std::string terminal_frame(std::span<const TopLine> lines, std::size_t columns, std::size_t rows,
                                          bool colours = false);
 
-class TopScreen {
+class TopScreen : boost::noncopyable {
  public:
   explicit TopScreen(bool plain);
   ~TopScreen();
-  TopScreen(const TopScreen&) = delete;
-  TopScreen& operator=(const TopScreen&) = delete;
 
   /// Of the window; 0: lines may be as long as they like.
   [[nodiscard]] std::size_t columns() const;

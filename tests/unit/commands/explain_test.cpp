@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/commands/explain_command.hpp"
+#include "gateway/commands/commands.hpp"
 #include "tests/places.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `axisgate reload` against a gateway's end of the control socket: one that hangs, and one that lives.
-#include "gateway/commands/reload_command.hpp"
+#include "gateway/commands/commands.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

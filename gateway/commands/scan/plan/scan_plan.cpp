@@ -64,7 +64,7 @@ ScanPlan::ScanPlan(const std::vector<profile::Profile>& profiles, ScanRange rang
     for (const profile::Object& object : profile.objects) {
       const profile::Place* place = place_of(object);
       const auto known = [&](const Tried& tried) { return tried.address == place->address; };
-      if (place == nullptr || tried_.size() >= kMaxTried || std::any_of(tried_.begin(), tried_.end(), known)) continue;
+      if (place == nullptr || tried_.size() >= kMaxTried || std::ranges::any_of(tried_, known)) continue;
       tried_.push_back({place->address, {}});
     }
   }
@@ -178,7 +178,7 @@ void ScanPlan::knock_on_next() {
 
 // A server that says no sizes, or answers all in four bytes, says of no object how wide it is.
 bool ScanPlan::tells_widths() const {
-  return std::any_of(tried_.begin(), tried_.end(), [](const Tried& it) { return it.size && *it.size < kWidestField; });
+  return std::ranges::any_of(tried_, [](const Tried& it) { return it.size && *it.size < kWidestField; });
 }
 
 std::vector<ScanFit> ScanPlan::fits() const {
@@ -190,7 +190,7 @@ std::vector<ScanFit> ScanPlan::fits() const {
       const profile::Place* place = place_of(object);
       if (place == nullptr) continue;
       const auto same = [&](const Tried& tried) { return tried.address == place->address; };
-      const auto tried = std::find_if(tried_.begin(), tried_.end(), same);
+      const auto tried = std::ranges::find_if(tried_, same);
       if (tried == tried_.end()) continue;
       ++fit.of;
       const std::uint8_t size = place->type.value_or(object.type).size;
@@ -201,13 +201,13 @@ std::vector<ScanFit> ScanPlan::fits() const {
     }
     if (fit.of > 0 && 2 * fit.has >= fit.of) out.push_back(std::move(fit));
   }
-  std::stable_sort(out.begin(), out.end(), better_fit);
+  std::ranges::stable_sort(out, better_fit);
   return out;
 }
 
 std::vector<FoundNode> ScanPlan::found() const {
   std::vector<FoundNode> out = found_;
-  std::sort(out.begin(), out.end(), [](const FoundNode& a, const FoundNode& b) { return a.node < b.node; });
+  std::ranges::sort(out, [](const FoundNode& a, const FoundNode& b) { return a.node < b.node; });
   return out;
 }
 

@@ -45,7 +45,7 @@ std::vector<Byte> bytes_of(const std::string& protocol, const bus::Exchange& exc
 
 template <typename List>
 bool has_address(const List& list, const ObjectAddress& address) {
-  return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.address == address; });
+  return std::ranges::any_of(list, [&](const auto& one) { return one.address == address; });
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ std::vector<ObjectAddress> SerialScanPlan::knocks_for(const std::vector<profile:
   std::vector<const profile::Profile*> left;
   for (const profile::Profile& profile : profiles) left.push_back(&profile);
   const auto has = [&](const profile::Profile& profile, const ObjectAddress& address) {
-    return std::any_of(profile.objects.begin(), profile.objects.end(), [&](const profile::Object& object) {
+    return std::ranges::any_of(profile.objects, [&](const profile::Object& object) {
       const profile::Place* place = read_place(object, protocol);
       return place != nullptr && place->address == address;
     });
@@ -86,8 +86,8 @@ std::vector<ObjectAddress> SerialScanPlan::knocks_for(const std::vector<profile:
     std::ptrdiff_t most = 0;
     ObjectAddress best;
     for (const Tried& object : objects) {
-      const auto count = std::count_if(left.begin(), left.end(),
-                                       [&](const profile::Profile* profile) { return has(*profile, object.address); });
+      const auto count =
+          std::ranges::count_if(left, [&](const profile::Profile* profile) { return has(*profile, object.address); });
       if (count <= most) continue;
       most = count;
       best = object.address;
@@ -224,15 +224,14 @@ std::vector<ScanFit> SerialScanPlan::fits() const {
     for (const profile::Object& object : profile.objects) {
       const profile::Place* place = read_place(object, protocol().name);
       if (place == nullptr) continue;
-      const auto tried =
-          std::find_if(tried_.begin(), tried_.end(), [&](const Tried& one) { return one.address == place->address; });
+      const auto tried = std::ranges::find_if(tried_, [&](const Tried& one) { return one.address == place->address; });
       if (tried == tried_.end()) continue;
       ++fit.of;
       if (tried->has) ++fit.has;
     }
     if (fit.of > 0 && 2 * fit.has >= fit.of) out.push_back(std::move(fit));
   }
-  std::stable_sort(out.begin(), out.end(), better_fit);
+  std::ranges::stable_sort(out, better_fit);
   return out;
 }
 
@@ -258,7 +257,7 @@ std::string serial_scan_table(const std::vector<FoundStation>& found, const std:
       remarks += fmt::format("station {}: {} fits best; less: {}\n", station.station, station.fits[0].profile,
                              fmt::join(fits, ", "));
     }
-    const bool known = std::find(speeches.begin(), speeches.end(), station.speech) != speeches.end();
+    const bool known = std::ranges::find(speeches, station.speech) != speeches.end();
     if (!known && !station.fits.empty()) speeches.push_back(station.speech);
   }
   if (!remarks.empty()) out += "\n" + remarks;
