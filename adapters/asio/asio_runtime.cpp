@@ -66,8 +66,6 @@ class AsioTimer final : public Timer {
  public:
   AsioTimer(boost::asio::io_context& context, std::function<void()> on_expiry)
       : state_(std::make_shared<TimerState>(context, std::move(on_expiry))) {}
-  AsioTimer(const AsioTimer&) = delete;
-  AsioTimer& operator=(const AsioTimer&) = delete;
   ~AsioTimer() override {
     state_->gone = true;
     boost::system::error_code ignored;  // its handler asks `gone` in any case

@@ -4,17 +4,16 @@
 // Ctrl-Z and Ctrl-S in force: a program that stands still lets go of no button.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <memory>
 
 namespace axisgate {
 
-class KeyMode {
+class KeyMode : boost::noncopyable {
  public:
   /// `descriptor` is a terminal, and outlives this.
   explicit KeyMode(int descriptor);
   ~KeyMode();
-  KeyMode(const KeyMode&) = delete;
-  KeyMode& operator=(const KeyMode&) = delete;
 
   /// Keys that were pressed and not read yet are gone.
   void forget_keys() const;

@@ -5,6 +5,7 @@
 // (drive).
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <deque>
 #include <memory>
 #include <string>
@@ -18,11 +19,8 @@
 namespace axisgate::bus {
 
 /// A drive, as its bus sees it.
-class BusDrive {
+class BusDrive : boost::noncopyable {
  public:
-  BusDrive() = default;
-  BusDrive(const BusDrive&) = delete;
-  BusDrive& operator=(const BusDrive&) = delete;
   virtual ~BusDrive() = default;
   /// The wire is this drive's for one exchange: for a bus job, or for a poll. No value: nothing to send after
   /// all. A suspect drive may answer with its resynchronisation read instead of what the bus job wants; the bus job

@@ -4,28 +4,23 @@
 // Never interprets a byte.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <string_view>
 
 #include "gateway/core/bytes.hpp"
 
 namespace axisgate::bus {
 
-class ByteLinkEvents {
+class ByteLinkEvents : boost::noncopyable {
  public:
-  ByteLinkEvents() = default;
-  ByteLinkEvents(const ByteLinkEvents&) = delete;
-  ByteLinkEvents& operator=(const ByteLinkEvents&) = delete;
   virtual ~ByteLinkEvents() = default;
   virtual void on_link_up() = 0;
   virtual void on_link_down(std::string_view why) = 0;
   virtual void on_bytes(Bytes bytes) = 0;
 };
 
-class ByteLink {
+class ByteLink : boost::noncopyable {
  public:
-  ByteLink() = default;
-  ByteLink(const ByteLink&) = delete;
-  ByteLink& operator=(const ByteLink&) = delete;
   virtual ~ByteLink() = default;
   /// `events` must outlive the link.
   virtual void start(ByteLinkEvents& events) = 0;

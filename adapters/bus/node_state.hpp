@@ -6,21 +6,15 @@
 #include <string_view>
 
 #include "adapters/bus/exchange.hpp"
+#include "gateway/core/name_table.hpp"
 
 namespace axisgate::bus {
 
 [[nodiscard]] constexpr std::string_view text(NodeState state) {
-  switch (state) {
-    case NodeState::stopped:
-      return "stopped";
-    case NodeState::pre_operational:
-      return "pre-operational";
-    case NodeState::operational:
-      return "operational";
-    case NodeState::unknown:
-      break;
-  }
-  return "passing state";
+  return names_of<NodeState>({{NodeState::stopped, "stopped"},
+                              {NodeState::pre_operational, "pre-operational"},
+                              {NodeState::operational, "operational"}})
+      .of(state, "passing state");
 }
 
 }  // namespace axisgate::bus

@@ -4,6 +4,7 @@
 // Never queues, repeats or orders requests: that is the arbiter's work alone.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <optional>
 #include <string_view>
 
@@ -12,11 +13,8 @@
 
 namespace axisgate::bus {
 
-class WireEvents {
+class WireEvents : boost::noncopyable {
  public:
-  WireEvents() = default;
-  WireEvents(const WireEvents&) = delete;
-  WireEvents& operator=(const WireEvents&) = delete;
   virtual ~WireEvents() = default;
   virtual void on_wire_up() = 0;
   /// `why` names the device and the system's reason, for the log.
@@ -27,11 +25,8 @@ class WireEvents {
   virtual void on_unsolicited(const UnsolicitedEvent& /*unsolicited*/) {}
 };
 
-class Wire {
+class Wire : boost::noncopyable {
  public:
-  Wire() = default;
-  Wire(const Wire&) = delete;
-  Wire& operator=(const Wire&) = delete;
   virtual ~Wire() = default;
   /// Opens the link and keeps it open until the wire is destroyed; `events` must outlive it. May call on_wire_up() at
   /// once.

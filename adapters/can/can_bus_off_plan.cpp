@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gateway/core/name_table.hpp"
+
 namespace axisgate::can {
 
 void BusOffPlan::on_errors(const CanErrors& errors, Instant now, CanTrouble& trouble) {
@@ -78,19 +80,17 @@ Instant BusOffPlan::due(Instant now) const {
 }
 
 std::string text(BusOffPlan::Health health) {
-  switch (health) {
-    case BusOffPlan::Health::usable:
-      return "usable";
-    case BusOffPlan::Health::no_ack:
-      return "nobody acknowledges: check the cable, the power of the drives and the bit rate";
-    case BusOffPlan::Health::bus_off:
-      return "bus-off: check bit rate, termination and wiring; back when the controller is restarted";
-    case BusOffPlan::Health::given_up:
-      return "bus-off more than 5 times in a minute: check bit rate, termination and wiring; tried again after a "
-             "minute "
-             "without bus-off, or when the interface is taken down and up";
-  }
-  return {};
+  using enum BusOffPlan::Health;
+  static constexpr auto kTexts = names_of<BusOffPlan::Health>({
+      {usable, "usable"},
+      {no_ack, "nobody acknowledges: check the cable, the power of the drives and the bit rate"},
+      {bus_off, "bus-off: check bit rate, termination and wiring; back when the controller is restarted"},
+      {given_up,
+       "bus-off more than 5 times in a minute: check bit rate, termination and wiring; tried again after a minute "
+       "without bus-off, or when the interface is taken down and up"},
+  });
+  static_assert(kTexts.has_all_to(given_up));
+  return std::string(kTexts.of(health));
 }
 
 }  // namespace axisgate::can

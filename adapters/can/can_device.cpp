@@ -28,7 +28,7 @@ std::string interface_mistake(std::string_view name) {
     return fmt::format("{} is no interface name: those have {} characters at most", name, kMaxInterfaceName);
   }
   const auto odd = [](char c) { return c <= ' ' || c == '/' || c == ':' || c > '~'; };
-  if (std::any_of(name.begin(), name.end(), odd) || name == "." || name == "..") {
+  if (std::ranges::any_of(name, odd) || name == "." || name == "..") {
     return fmt::format("{} is no interface name; a serial CAN adapter is given as slcan:PATH", name);
   }
   return {};

@@ -14,7 +14,7 @@ std::uint32_t widest(const CanFilter& filter) { return filter.extended ? kMaxExt
 
 void remove_doubles(std::vector<CanFilter>& filters) {
   const auto key = [](const CanFilter& filter) { return std::tuple(filter.extended, filter.mask, filter.id); };
-  std::sort(filters.begin(), filters.end(), [key](const CanFilter& a, const CanFilter& b) { return key(a) < key(b); });
+  std::ranges::sort(filters, [key](const CanFilter& a, const CanFilter& b) { return key(a) < key(b); });
   filters.erase(std::unique(filters.begin(), filters.end()), filters.end());
 }
 
@@ -40,8 +40,7 @@ FilterSet::FilterSet(std::vector<CanFilter> filters) : filters_(std::move(filter
 
 bool FilterSet::passes(const CanFrame& frame) const {
   if (!frame.extended) return frame.id <= kMaxStandardId && standard_.test(frame.id);
-  return std::any_of(extended_.begin(), extended_.end(),
-                     [&frame](const CanFilter& filter) { return filter.passes(frame); });
+  return std::ranges::any_of(extended_, [&frame](const CanFilter& filter) { return filter.passes(frame); });
 }
 
 std::vector<CanFilter> FilterSet::for_kernel(std::size_t most) const {

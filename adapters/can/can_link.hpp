@@ -4,6 +4,7 @@
 // Never interprets a frame.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -48,11 +49,8 @@ struct CanTrouble {
   friend bool operator==(const CanTrouble&, const CanTrouble&) = default;
 };
 
-class CanLinkEvents {
+class CanLinkEvents : boost::noncopyable {
  public:
-  CanLinkEvents() = default;
-  CanLinkEvents(const CanLinkEvents&) = delete;
-  CanLinkEvents& operator=(const CanLinkEvents&) = delete;
   virtual ~CanLinkEvents() = default;
   virtual void on_link_up() = 0;
   /// `why` names the device and what is wrong with it: gone, down, bus-off, nobody acknowledges.
@@ -61,11 +59,8 @@ class CanLinkEvents {
   virtual void on_frame(const CanFrame& frame, Instant received) = 0;
 };
 
-class CanLink {
+class CanLink : boost::noncopyable {
  public:
-  CanLink() = default;
-  CanLink(const CanLink&) = delete;
-  CanLink& operator=(const CanLink&) = delete;
   virtual ~CanLink() = default;
   /// `events` must outlive the link. `filters`: only what passes one of them is handed over.
   virtual void start(CanLinkEvents& events, std::vector<CanFilter> filters) = 0;

@@ -16,8 +16,7 @@ class SendQueue {
   /// False: full, and the frame is not taken.
   [[nodiscard]] bool push(const CanFrame& frame, bool urgent, Instant now) {
     if (waiting_.size() >= kMaxUnsentFrames) return false;
-    const auto normal =
-        std::find_if(waiting_.begin(), waiting_.end(), [](const Entry& entry) { return !entry.urgent; });
+    const auto normal = std::ranges::find_if(waiting_, [](const Entry& entry) { return !entry.urgent; });
     waiting_.insert(urgent ? normal : waiting_.end(), {frame, urgent, now});
     return true;
   }

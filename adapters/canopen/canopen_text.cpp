@@ -8,6 +8,7 @@
 #include "adapters/canopen/emergency.hpp"
 #include "adapters/canopen/nmt.hpp"
 #include "adapters/canopen/sdo/sdo_codec.hpp"
+#include "gateway/core/name_table.hpp"
 
 namespace axisgate::canopen {
 
@@ -22,19 +23,14 @@ std::string value_text(Bytes bytes) {
 }
 
 std::string_view command_text(NmtCommand command) {
-  switch (command) {
-    case NmtCommand::start:
-      return "start";
-    case NmtCommand::stop:
-      return "stop";
-    case NmtCommand::enter_pre_operational:
-      return "pre-operational";
-    case NmtCommand::reset_node:
-      return "reset";
-    case NmtCommand::reset_communication:
-      return "reset communication";
-  }
-  return "";
+  static constexpr auto kNames = names_of<NmtCommand>({
+      {NmtCommand::start, "start"},
+      {NmtCommand::stop, "stop"},
+      {NmtCommand::enter_pre_operational, "pre-operational"},
+      {NmtCommand::reset_node, "reset"},
+      {NmtCommand::reset_communication, "reset communication"},
+  });
+  return kNames.of(command);
 }
 
 std::string nmt_text(Bytes bytes) {

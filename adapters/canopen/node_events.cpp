@@ -18,8 +18,8 @@ NodeEvents::NodeEvents(const NodeWatch::Settings& settings)
                     can::BabbleWatch(can::kMaxProcessDataPerSecond), can::BabbleWatch(can::kMaxProcessDataPerSecond)} {}
 
 bool NodeEvents::News::restarted() const {
-  return std::any_of(unsolicited_events.begin(), unsolicited_events.end(),
-                     [](const bus::UnsolicitedEvent& n) { return n.kind == UnsolicitedKind::started; });
+  return std::ranges::any_of(unsolicited_events,
+                             [](const bus::UnsolicitedEvent& n) { return n.kind == UnsolicitedKind::started; });
 }
 
 void NodeEvents::link_up(Instant now) {

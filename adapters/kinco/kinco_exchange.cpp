@@ -8,15 +8,8 @@ namespace axisgate::kinco {
 namespace {
 
 Command write_command(std::uint8_t size) {
-  switch (size) {
-    case 1:
-      return Command::write_1;
-    case 2:
-      return Command::write_2;
-    default:
-      assert(size == 4);
-      return Command::write_4;
-  }
+  assert(size == 1 || size == 2 || size == 4);
+  return size == 1 ? Command::write_1 : size == 2 ? Command::write_2 : Command::write_4;
 }
 
 /// The low `size` bytes.

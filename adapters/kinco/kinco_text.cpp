@@ -16,24 +16,25 @@ std::string value_text(std::uint32_t data, int size) {
 }  // namespace
 
 std::string describe(const Frame& frame) {
-  std::string object = fmt::format("{:04X}.{:02X}", frame.object.index, frame.object.sub);
+  const std::string object = fmt::format("{:04X}.{:02X}", frame.object.index, frame.object.sub);
+  const auto with_value = [&](const char* verb, int size) {
+    return fmt::format("{} {} = {}", verb, object, value_text(frame.data, size));
+  };
   switch (frame.command) {
     case Command::write_4:
-      return "write " + object + " = " + value_text(frame.data, 4);
+      return with_value("write", 4);
     case Command::write_2:
-      return "write " + object + " = " + value_text(frame.data, 2);
+      return with_value("write", 2);
     case Command::write_1:
-      return "write " + object + " = " + value_text(frame.data, 1);
+      return with_value("write", 1);
     case Command::read:
       return "read " + object;
     case Command::written:
       return "written " + object;
     case Command::value_4:
-      return "value " + object + " = " + value_text(frame.data, 4);
     case Command::value_2:
-      return "value " + object + " = " + value_text(frame.data, 2);
     case Command::value_1:
-      return "value " + object + " = " + value_text(frame.data, 1);
+      return with_value("value", value_size(frame.command));
     case Command::error:
       return "error " + object + ": " + value_text(frame.data, 4);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/core/rtu_crc.hpp"
 
 namespace axisgate::modbus_rtu {
@@ -125,19 +126,15 @@ std::size_t reply_bytes(const bus::Exchange& exchange) {
 }
 
 std::string_view text(NotMine reason) {
-  switch (reason) {
-    case NotMine::other_unit:
-      return "from another unit";
-    case NotMine::other_function:
-      return "another function";
-    case NotMine::wrong_length:
-      return "another length";
-    case NotMine::wrong_echo:
-      return "another echo";
-    case NotMine::malformed:
-      return "malformed";
-  }
-  return "";
+  static constexpr auto kNames = names_of<NotMine>({
+      {NotMine::other_unit, "from another unit"},
+      {NotMine::other_function, "another function"},
+      {NotMine::wrong_length, "another length"},
+      {NotMine::wrong_echo, "another echo"},
+      {NotMine::malformed, "malformed"},
+  });
+  static_assert(kNames.has_all_to(NotMine::malformed));
+  return kNames.of(reason);
 }
 
 Judgement judge(Bytes frame, const bus::Exchange& exchange, const RtuNode& node) {

@@ -6,6 +6,7 @@
 // inside a call of its own, never repeats or orders frames.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <cstdint>
 #include <string_view>
 
@@ -19,11 +20,8 @@ using ExchangeNumber = std::uint64_t;
 /// Longest frame without its CRC: unit address and a PDU of 253 bytes (Modbus application protocol V1.1b3, 4.1).
 inline constexpr std::size_t kMaxFrame = 254;
 
-class RtuLinkEvents {
+class RtuLinkEvents : boost::noncopyable {
  public:
-  RtuLinkEvents() = default;
-  RtuLinkEvents(const RtuLinkEvents&) = delete;
-  RtuLinkEvents& operator=(const RtuLinkEvents&) = delete;
   virtual ~RtuLinkEvents() = default;
   virtual void on_link_up() = 0;
   /// `why` names the device and the system's reason, for the log.
@@ -37,11 +35,8 @@ class RtuLinkEvents {
   virtual void on_glitch(std::size_t bytes) = 0;
 };
 
-class RtuLink {
+class RtuLink : boost::noncopyable {
  public:
-  RtuLink() = default;
-  RtuLink(const RtuLink&) = delete;
-  RtuLink& operator=(const RtuLink&) = delete;
   virtual ~RtuLink() = default;
   /// Opens the device and keeps it open, reopening it when it was lost. `events` must outlive the link.
   virtual void start(RtuLinkEvents& events) = 0;

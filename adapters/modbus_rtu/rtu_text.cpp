@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "adapters/modbus_rtu/rtu_codec.hpp"
+#include "gateway/core/name_table.hpp"
 
 namespace axisgate::modbus_rtu {
 
@@ -26,30 +27,19 @@ std::string words(Bytes data) {
 
 /// V1.1b3, 7.
 std::string_view exception_name(std::uint8_t code) {
-  switch (code) {
-    case 0x01:
-      return "illegal function";
-    case 0x02:
-      return "illegal data address";
-    case 0x03:
-      return "illegal data value";
-    case 0x04:
-      return "device failure";
-    case 0x05:
-      return "acknowledged, it takes long";
-    case 0x06:
-      return "device busy";
-    case 0x07:
-      return "not acknowledged";
-    case 0x08:
-      return "memory parity error";
-    case 0x0A:
-      return "gateway path unavailable";
-    case 0x0B:
-      return "gateway target does not respond";
-    default:
-      return "unknown code";
-  }
+  static constexpr auto kNames = names_of<std::uint8_t>({
+      {0x01, "illegal function"},
+      {0x02, "illegal data address"},
+      {0x03, "illegal data value"},
+      {0x04, "device failure"},
+      {0x05, "acknowledged, it takes long"},
+      {0x06, "device busy"},
+      {0x07, "not acknowledged"},
+      {0x08, "memory parity error"},
+      {0x0A, "gateway path unavailable"},
+      {0x0B, "gateway target does not respond"},
+  });
+  return kNames.of(code, "unknown code");
 }
 
 std::string unnamed(Bytes frame) {

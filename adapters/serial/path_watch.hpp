@@ -7,18 +7,17 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/noncopyable.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 
 namespace axisgate::serial {
 
-class PathWatch {
+class PathWatch : boost::noncopyable {
  public:
   /// `on_change` runs on the context's thread, not after the watch is destroyed.
   PathWatch(boost::asio::io_context& context, const std::string& path, std::function<void()> on_change);
-  PathWatch(const PathWatch&) = delete;
-  PathWatch& operator=(const PathWatch&) = delete;
   ~PathWatch();
 
   /// Looks for the folder again. False where it is not there, or the system has no watch left: then only retries help.

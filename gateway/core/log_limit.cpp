@@ -14,8 +14,7 @@ bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; 
 
 bool is_address(std::string_view word) {
   constexpr std::ptrdiff_t kDots = 3;
-  return std::count(word.begin(), word.end(), '.') == kDots && is_digit(word.back()) &&
-         word.find("..") == std::string_view::npos;
+  return std::ranges::count(word, '.') == kDots && is_digit(word.back()) && word.find("..") == std::string_view::npos;
 }
 
 /// A byte as lines of bytes have it, a number in hexadecimal, or a part of a GUID.
@@ -23,7 +22,7 @@ bool is_hex_number(std::string_view word) {
   constexpr std::string_view kPrefix = "0x";
   constexpr std::size_t kByte = 2, kGuidPart = 6;
   const bool marked = word.starts_with(kPrefix);
-  const bool guid = word.size() >= kGuidPart && std::any_of(word.begin(), word.end(), is_digit);
+  const bool guid = word.size() >= kGuidPart && std::ranges::any_of(word, is_digit);
   if (!marked && !guid && word.size() != kByte) return false;
   return std::all_of(word.begin() + (marked ? kByte : 0), word.end(), is_hex);
 }

@@ -1,52 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/image/command.hpp"
 
+#include "gateway/core/name_table.hpp"
+
 namespace axisgate {
 
 std::string_view text(Command command) {
-  switch (command) {
-    case Command::none:
-      return "none";
-    case Command::enable:
-      return "enable";
-    case Command::disable:
-      return "disable";
-    case Command::quick_stop:
-      return "quick_stop";
-    case Command::halt:
-      return "halt";
-    case Command::fault_reset:
-      return "fault_reset";
-    case Command::move_absolute:
-      return "move_absolute";
-    case Command::move_relative:
-      return "move_relative";
-    case Command::run_velocity:
-      return "run_velocity";
-    case Command::run_torque:
-      return "run_torque";
-    case Command::home:
-      return "home";
-    case Command::set_position:
-      return "set_position";
-    case Command::save_parameters:
-      return "save_parameters";
-    case Command::release:
-      return "release";
-    case Command::take_over:
-      return "take_over";
-    case Command::end_halt:
-      return "end_halt";
-    case Command::jog_forward:
-      return "jog_forward";
-    case Command::jog_reverse:
-      return "jog_reverse";
-    case Command::jog_end:
-      return "jog_end";
-    case Command::end_run:
-      return "end_run";
-  }
-  return "?";
+  using enum Command;
+  static constexpr auto kNames = names_of<Command>({
+      {none, "none"},
+      {enable, "enable"},
+      {disable, "disable"},
+      {quick_stop, "quick_stop"},
+      {halt, "halt"},
+      {fault_reset, "fault_reset"},
+      {move_absolute, "move_absolute"},
+      {move_relative, "move_relative"},
+      {run_velocity, "run_velocity"},
+      {run_torque, "run_torque"},
+      {home, "home"},
+      {set_position, "set_position"},
+      {save_parameters, "save_parameters"},
+      {release, "release"},
+      {take_over, "take_over"},
+      {end_halt, "end_halt"},
+      {jog_forward, "jog_forward"},
+      {jog_reverse, "jog_reverse"},
+      {jog_end, "jog_end"},
+      {end_run, "end_run"},
+  });
+  static_assert(kNames.has_all_to(Command{kLastCommand}));
+  return kNames.of(command);
 }
 
 std::optional<Quantity> target_of(Command command) {
@@ -69,17 +53,14 @@ bool asks_nothing(const WriteBatch& batch) {
 }
 
 std::string_view text(Role role) {
-  switch (role) {
-    case Role::none:
-      return "none";
-    case Role::viewer:
-      return "viewer";
-    case Role::operator_:
-      return "operator";
-    case Role::engineer:
-      return "engineer";
-  }
-  return "?";
+  static constexpr auto kNames = names_of<Role>({
+      {Role::none, "none"},
+      {Role::viewer, "viewer"},
+      {Role::operator_, "operator"},
+      {Role::engineer, "engineer"},
+  });
+  static_assert(kNames.has_all_to(Role::engineer));
+  return kNames.of(role);
 }
 
 }  // namespace axisgate

@@ -4,6 +4,7 @@
 // core thread. Never blocks and never throws.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <functional>
 #include <optional>
 
@@ -13,11 +14,8 @@ namespace axisgate {
 
 using BatchCallback = std::function<void(const BatchResult&)>;
 
-class CommandPort {
+class CommandPort : boost::noncopyable {
  public:
-  CommandPort() = default;
-  CommandPort(const CommandPort&) = delete;
-  CommandPort& operator=(const CommandPort&) = delete;
   virtual ~CommandPort() = default;
   /// With a value: that is the result, and `on_result` is never called. Without: `on_result` is called once, later,
   /// never from inside submit(). An unknown axis number: no_path.

@@ -3,28 +3,24 @@
 
 #include <utility>
 
+#include "gateway/core/name_table.hpp"
+
 namespace axisgate {
 
 std::string_view text(EventKind kind) {
-  switch (kind) {
-    case EventKind::fault:
-      return "fault";
-    case EventKind::warning:
-      return "warning";
-    case EventKind::link:
-      return "link";
-    case EventKind::lease:
-      return "lease";
-    case EventKind::homed:
-      return "homed";
-    case EventKind::boot:
-      return "boot";
-    case EventKind::command:
-      return "command";
-    case EventKind::position_wrapped:
-      return "position_wrapped";
-  }
-  return "?";
+  using enum EventKind;
+  static constexpr auto kNames = names_of<EventKind>({
+      {fault, "fault"},
+      {warning, "warning"},
+      {link, "link"},
+      {lease, "lease"},
+      {homed, "homed"},
+      {boot, "boot"},
+      {command, "command"},
+      {position_wrapped, "position_wrapped"},
+  });
+  static_assert(kNames.has_all_to(position_wrapped));
+  return kNames.of(kind);
 }
 
 void EventRing::add(Instant at, AxisNumber axis, EventKind kind, std::uint32_t code, std::string text, bool asked_for) {

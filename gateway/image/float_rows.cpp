@@ -8,14 +8,8 @@ namespace {
 
 /// Register units in a turn, an rpm or an rpm/s.
 Rational per_float_unit(const RegisterRow& row, const Rational& units_per_rev) {
-  switch (row.kind) {
-    case Kind::position:
-      return units_per_rev;
-    case Kind::velocity:
-      return Rational(1000);
-    default:
-      return Rational(10);
-  }
+  if (row.kind == Kind::position) return units_per_rev;
+  return Rational(row.kind == Kind::velocity ? 1000 : 10);
 }
 
 }  // namespace

@@ -16,8 +16,7 @@ AxisImage& ProcessImage::add_axis(AxisNumber number, std::string name, std::uint
   axis->bus = bus;
   axis->board = &changes;
   by_number_[number] = axis.get();
-  const auto place =
-      std::find_if(axes_.begin(), axes_.end(), [number](const auto& other) { return other->number > number; });
+  const auto place = std::ranges::find_if(axes_, [number](const auto& other) { return other->number > number; });
   return **axes_.insert(place, std::move(axis));
 }
 

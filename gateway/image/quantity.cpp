@@ -2,7 +2,8 @@
 #include "gateway/image/quantity.hpp"
 
 #include <cassert>
-#include <limits>
+
+#include "gateway/core/name_table.hpp"
 
 namespace axisgate {
 namespace {
@@ -69,53 +70,29 @@ std::optional<Quantity> quantity_named(std::string_view name) {
 }
 
 std::string_view unit_text(Kind kind) {
-  switch (kind) {
-    case Kind::code:
-      return "";
-    case Kind::position:
-      return "1/units_per_rev rev";
-    case Kind::velocity:
-      return "0.001 rpm";
-    case Kind::acceleration:
-      return "0.1 rpm/s";
-    case Kind::torque:
-      return "0.1 %";
-    case Kind::current:
-      return "0.01 A";
-    case Kind::temperature:
-      return "0.1 degC";
-    case Kind::voltage:
-      return "0.1 V";
-  }
-  return "";
-}
-
-Range range_of(RegisterType type) {
-  switch (type) {
-    case RegisterType::u16:
-      return {0, std::numeric_limits<std::uint16_t>::max() - 1};
-    case RegisterType::i16:
-      return {std::numeric_limits<std::int16_t>::min() + 1, std::numeric_limits<std::int16_t>::max()};
-    case RegisterType::u32:
-      return {0, std::int64_t{std::numeric_limits<std::uint32_t>::max()} - 1};
-    case RegisterType::i32:
-      return {std::numeric_limits<std::int32_t>::min() + 1, std::numeric_limits<std::int32_t>::max()};
-  }
-  return {};
+  static constexpr auto kUnits = names_of<Kind>({
+      {Kind::code, ""},
+      {Kind::position, "1/units_per_rev rev"},
+      {Kind::velocity, "0.001 rpm"},
+      {Kind::acceleration, "0.1 rpm/s"},
+      {Kind::torque, "0.1 %"},
+      {Kind::current, "0.01 A"},
+      {Kind::temperature, "0.1 degC"},
+      {Kind::voltage, "0.1 V"},
+  });
+  static_assert(kUnits.has_all_to(Kind::voltage));
+  return kUnits.of(kind);
 }
 
 std::int64_t no_value(RegisterType type) {
-  switch (type) {
-    case RegisterType::u16:
-      return std::numeric_limits<std::uint16_t>::max();
-    case RegisterType::i16:
-      return std::numeric_limits<std::int16_t>::min();
-    case RegisterType::u32:
-      return std::numeric_limits<std::uint32_t>::max();
-    case RegisterType::i32:
-      return std::numeric_limits<std::int32_t>::min();
-  }
-  return 0;
+  const std::int64_t numbers = std::int64_t{1} << (16 * registers_of(type));
+  const bool is_signed = type == i16 || type == i32;
+  return is_signed ? -numbers / 2 : numbers - 1;
+}
+
+Range range_of(RegisterType type) {
+  const std::int64_t outside = no_value(type);
+  return outside < 0 ? Range{outside + 1, -(outside + 1)} : Range{0, outside - 1};
 }
 
 }  // namespace axisgate

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <utility>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/register_rows.hpp"
 
@@ -154,17 +155,10 @@ std::string_view unit_of(const RegisterRow& row, std::string_view position_unit)
 }
 
 std::string_view text(RegisterType type) {
-  switch (type) {
-    case RegisterType::u16:
-      return "u16";
-    case RegisterType::i16:
-      return "i16";
-    case RegisterType::u32:
-      return "u32";
-    case RegisterType::i32:
-      return "i32";
-  }
-  return "?";
+  using enum RegisterType;
+  static constexpr auto kNames = names_of<RegisterType>({{u16, "u16"}, {i16, "i16"}, {u32, "u32"}, {i32, "i32"}});
+  static_assert(kNames.has_all_to(i32));
+  return kNames.of(type);
 }
 
 }  // namespace axisgate

@@ -3,6 +3,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/listing/map_listing.hpp"
 
 namespace axisgate::listing {
@@ -110,12 +111,10 @@ std::string titles(const ListedMap& map) {
 }  // namespace
 
 std::optional<MapFormat> map_format_named(std::string_view name) {
-  if (name == "json") return MapFormat::json;
-  if (name == "csv") return MapFormat::csv;
-  if (name == "md") return MapFormat::markdown;
-  if (name == "table") return MapFormat::table;
-  if (name == "st") return MapFormat::structured_text;
-  return std::nullopt;
+  using enum MapFormat;
+  static constexpr auto kNames =
+      names_of<MapFormat>({{json, "json"}, {csv, "csv"}, {markdown, "md"}, {table, "table"}, {structured_text, "st"}});
+  return kNames.named(name);
 }
 
 std::string map_text(const ListedMap& map, MapFormat format) {

@@ -9,7 +9,7 @@ namespace axisgate::manual {
 namespace {
 
 std::string function_name(std::string program) {
-  std::replace(program.begin(), program.end(), '-', '_');
+  std::ranges::replace(program, '-', '_');
   return "_" + program;
 }
 
@@ -39,8 +39,8 @@ std::string command_line(const std::string& way, const Command& command) {
   for (const Option& option : command.options)
     for (const std::string& name : option.names) options += (options.empty() ? "" : " ") + name;
   for (const Command& one : command.commands) below += (below.empty() ? "" : " ") + one.name;
-  const bool files = std::any_of(command.arguments.begin(), command.arguments.end(),
-                                 [](const Option& argument) { return argument.takes == Takes::file; });
+  const bool files =
+      std::ranges::any_of(command.arguments, [](const Option& argument) { return argument.takes == Takes::file; });
   return fmt::format("    '{}') options='{}' commands='{}' files={} ;;\n", way, options, below, files ? "yes" : "no");
 }
 

@@ -31,8 +31,7 @@ std::vector<std::string> accepted_words(CLI::Option& option) {
       word += c;
       continue;
     }
-    if (!word.empty() && accepted(option, word) && std::find(words.begin(), words.end(), word) == words.end())
-      words.push_back(word);
+    if (!word.empty() && accepted(option, word) && std::ranges::find(words, word) == words.end()) words.push_back(word);
     word.clear();
   }
   return words;

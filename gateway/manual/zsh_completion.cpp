@@ -42,8 +42,8 @@ std::string specifications(const Command& command) {
 }
 
 std::string function_of(std::string way) {
-  std::replace_if(
-      way.begin(), way.end(), [](char c) { return c == '-' || c == ' '; }, '_');
+  std::ranges::replace_if(
+      way, [](char c) { return c == '-' || c == ' '; }, '_');
   return "_" + way;
 }
 

@@ -6,6 +6,7 @@
 // missing device or a log that nobody reads for a gateway that hangs.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,13 +17,11 @@ namespace axisgate::process {
 
 inline constexpr Duration kLastReport = std::chrono::seconds(1);
 
-class Service {
+class Service : boost::noncopyable {
  public:
   /// `all_turn(slack)`: every bus had its turn when it was due, or at most so long ago.
   Service(Runtime& runtime, std::function<bool(Duration slack)> all_turn);
   ~Service();
-  Service(const Service&) = delete;
-  Service& operator=(const Service&) = delete;
 
   /// `status`: one line, as `systemctl status` shows it.
   void ready(const std::string& status);

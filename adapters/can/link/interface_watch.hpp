@@ -6,6 +6,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/noncopyable.hpp>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,13 +19,11 @@ struct InterfaceChange {
   bool running = false;  ///< the driver says that it works: false while bus-off
 };
 
-class InterfaceWatch {
+class InterfaceWatch : boost::noncopyable {
  public:
   /// `on_change` runs on the context's thread, not after the watch is destroyed.
   InterfaceWatch(boost::asio::io_context& context, std::string interface,
                  std::function<void(const InterfaceChange&)> on_change);
-  InterfaceWatch(const InterfaceWatch&) = delete;
-  InterfaceWatch& operator=(const InterfaceWatch&) = delete;
   ~InterfaceWatch();
 
  private:

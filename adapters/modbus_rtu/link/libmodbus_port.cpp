@@ -7,6 +7,7 @@
 #include <sys/ioctl.h>
 #include <sys/select.h>
 #include <unistd.h>
+#include <boost/noncopyable.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -36,13 +37,11 @@ Instant clock_now() { return Instant(std::chrono::steady_clock::now().time_since
 }  // namespace
 
 /// Never closed by libmodbus: modbus_close() would set the line as modbus_connect() found it, which was never called.
-struct LibmodbusPort::Context {
+struct LibmodbusPort::Context : private boost::noncopyable {
   explicit Context(const serial::SerialSettings& settings)
       : modbus(modbus_new_rtu(settings.device.c_str(), static_cast<int>(settings.baud), 'N', 8, 1)) {
     static_cast<void>(::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK));
   }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
   ~Context() {
     modbus_free(modbus);
     for (const int end : pipe) {

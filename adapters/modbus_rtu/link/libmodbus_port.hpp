@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <boost/noncopyable.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -33,14 +34,12 @@ struct Heard {
   std::string why{};      ///< of a loss
 };
 
-class LibmodbusPort {
+class LibmodbusPort : boost::noncopyable {
  public:
   /// Bytes that skip() takes at once.
   static constexpr std::size_t kSkipSize = 256;
 
   LibmodbusPort(serial::SerialSettings settings, Duration adapter_latency);
-  LibmodbusPort(const LibmodbusPort&) = delete;
-  LibmodbusPort& operator=(const LibmodbusPort&) = delete;
   ~LibmodbusPort();
 
   struct Opening {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <boost/asio/post.hpp>
+#include <boost/noncopyable.hpp>
 #include <cerrno>
 #include <csignal>
 #include <mutex>
@@ -59,15 +60,13 @@ struct Commands {
 }  // namespace
 
 /// What the two threads share; handlers in the core's queue may outlive the worker and keep it.
-class PortWorker::Mailbox : public std::enable_shared_from_this<Mailbox> {
+class PortWorker::Mailbox : public std::enable_shared_from_this<Mailbox>, boost::noncopyable {
  public:
   Mailbox(boost::asio::io_context& context, PortWorkerEvents& events)
       : context_(context), events_(&events), wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
     told_.reserve(kMaxHeard + 4);
   }
-  Mailbox(const Mailbox&) = delete;
-  Mailbox& operator=(const Mailbox&) = delete;
   ~Mailbox() { ::close(wake_); }
 
   // --- The core's side ---

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <boost/asio/io_context.hpp>
+#include <boost/noncopyable.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,11 +21,8 @@ namespace axisgate::modbus_rtu {
 /// Numbers openings: what is reported of an earlier one is out of date.
 using OpeningNumber = std::uint64_t;
 
-class PortWorkerEvents {
+class PortWorkerEvents : boost::noncopyable {
  public:
-  PortWorkerEvents() = default;
-  PortWorkerEvents(const PortWorkerEvents&) = delete;
-  PortWorkerEvents& operator=(const PortWorkerEvents&) = delete;
   virtual ~PortWorkerEvents() = default;
   virtual void on_opened(OpeningNumber opening, const std::vector<std::string>& notes) = 0;
   virtual void on_not_opened(OpeningNumber opening, const std::string& why) = 0;
@@ -34,7 +32,7 @@ class PortWorkerEvents {
   virtual void on_glitch(OpeningNumber opening, std::size_t bytes) = 0;
 };
 
-class PortWorker {
+class PortWorker : boost::noncopyable {
  public:
   /// Frames and runs of noise that wait for the core's thread; what comes beyond is dropped, its bytes reported as
   /// noise.
@@ -45,8 +43,6 @@ class PortWorker {
   /// `context` is the core's and must outlive the worker; `events` are called on its thread.
   PortWorker(serial::SerialSettings settings, Duration adapter_latency, boost::asio::io_context& context,
              PortWorkerEvents& events);
-  PortWorker(const PortWorker&) = delete;
-  PortWorker& operator=(const PortWorker&) = delete;
   ~PortWorker();
 
   void open(OpeningNumber opening);

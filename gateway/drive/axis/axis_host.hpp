@@ -3,6 +3,7 @@
 // nothing of the axis is called from inside. Never shows a bus or a wire.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <string>
 
 #include "adapters/bus/bus_job.hpp"
@@ -10,11 +11,8 @@
 
 namespace axisgate::drive {
 
-class AxisHost {
+class AxisHost : boost::noncopyable {
  public:
-  AxisHost() = default;
-  AxisHost(const AxisHost&) = delete;
-  AxisHost& operator=(const AxisHost&) = delete;
   virtual ~AxisHost() = default;
   struct Queued {
     Errc code = Errc::ok;  ///< ok or queue_full

@@ -142,7 +142,7 @@ void BatchQueue::on_job_ended(bus::JobId id, Errc code) {
 }
 
 void BatchQueue::complete(bus::JobId id) {
-  const auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.id == id; });
+  const auto found = std::ranges::find_if(pending_, [&](const Pending& p) { return p.id == id; });
   if (found == pending_.end()) return;
   Pending pending = std::move(*found);
   pending_.erase(found);
@@ -166,7 +166,7 @@ void BatchQueue::on_time() {
     return [now, &p](const Waiting& client) { return now >= deadline_of(p, client); };
   };
   for (const Pending& p : pending_)
-    if (std::any_of(p.callbacks.begin(), p.callbacks.end(), is_late(p))) late.push_back(p.id);
+    if (std::ranges::any_of(p.callbacks, is_late(p))) late.push_back(p.id);
   for (const bus::JobId id : late) {
     Pending* pending = pending_.find(id);
     if (pending == nullptr) continue;  // what was withdrawn for another has dropped it

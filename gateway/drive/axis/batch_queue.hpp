@@ -5,6 +5,7 @@
 // may be carried out: its axis does.
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,11 +22,8 @@ inline constexpr std::size_t kMaxJoined = 64;
 inline constexpr Duration kStopsFirst = std::chrono::milliseconds(20);
 
 /// What the queue asks of its axis, and reports to it.
-class QueueOwner {
+class QueueOwner : boost::noncopyable {
  public:
-  QueueOwner() = default;
-  QueueOwner(const QueueOwner&) = delete;
-  QueueOwner& operator=(const QueueOwner&) = delete;
   virtual ~QueueOwner() = default;
   /// Its turn has come: ok, or why it ends here.
   [[nodiscard]] virtual Errc may_go_on(Pending& pending) = 0;

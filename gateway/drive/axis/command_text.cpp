@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/model/cia402.hpp"
 
@@ -14,45 +16,36 @@ namespace {
 
 /// A register's number in the unit that people speak in; empty for codes.
 std::string in_words(const AxisCore& core, Kind kind, std::int64_t value) {
-  const auto number = static_cast<double>(value);
-  constexpr double kMilli = 1000, kDeci = 10, kCenti = 100;
-  switch (kind) {
-    case Kind::code:
-      return {};
-    case Kind::position:
-      return fmt::format(" ({:.6g} rev)", number / core.model.units_per_rev.to_double());
-    case Kind::velocity:
-      return fmt::format(" ({:.6g} rpm)", number / kMilli);
-    case Kind::acceleration:
-      return fmt::format(" ({:.6g} rpm/s)", number / kDeci);
-    case Kind::torque:
-      return fmt::format(" ({:.6g} %)", number / kDeci);
-    case Kind::current:
-      return fmt::format(" ({:.6g} A)", number / kCenti);
-    case Kind::temperature:
-      return fmt::format(" ({:.6g} degC)", number / kDeci);
-    case Kind::voltage:
-      return fmt::format(" ({:.6g} V)", number / kDeci);
-  }
-  return {};
+  struct Unit {
+    double registers;  ///< that are one of it
+    std::string_view name;
+  };
+  const std::map<Kind, Unit> units{
+      {Kind::position, {core.model.units_per_rev.to_double(), "rev"}},
+      {Kind::velocity, {1000, "rpm"}},
+      {Kind::acceleration, {10, "rpm/s"}},
+      {Kind::torque, {10, "%"}},
+      {Kind::current, {100, "A"}},
+      {Kind::temperature, {10, "degC"}},
+      {Kind::voltage, {10, "V"}},
+  };
+  const auto unit = units.find(kind);
+  if (unit == units.end()) return {};
+  return fmt::format(" ({:.6g} {})", static_cast<double>(value) / unit->second.registers, unit->second.name);
 }
 
 std::string_view asked_by(std::uint16_t word) {
-  switch (model::request_of(word)) {
-    case model::Request402::disable_voltage:
-      return "disable voltage";
-    case model::Request402::quick_stop:
-      return "quick stop";
-    case model::Request402::shutdown:
-      return "shutdown";
-    case model::Request402::switch_on:
-      return "switch on";
-    case model::Request402::enable_operation:
-      return "enable operation";
-    case model::Request402::other:
-      break;
-  }
-  return "bits 0 to 3 = 14";
+  using enum model::Request402;
+  static constexpr auto kNames = names_of<model::Request402>({
+      {disable_voltage, "disable voltage"},
+      {quick_stop, "quick stop"},
+      {shutdown, "shutdown"},
+      {switch_on, "switch on"},
+      {enable_operation, "enable operation"},
+      {other, "bits 0 to 3 = 14"},
+  });
+  static_assert(kNames.has_all_to(other));
+  return kNames.of(model::request_of(word));
 }
 
 std::string controlword_text(std::uint16_t word) {
@@ -99,8 +92,7 @@ std::string limit_text(const AxisCore& core, const PassedLimit& passed) {
 }
 
 bool sets(const WriteBatch& batch, Quantity quantity) {
-  return std::any_of(batch.setpoints.begin(), batch.setpoints.end(),
-                     [quantity](const Setpoint& sp) { return sp.quantity == quantity; });
+  return std::ranges::any_of(batch.setpoints, [quantity](const Setpoint& sp) { return sp.quantity == quantity; });
 }
 
 std::string command_text(const AxisCore& core, const WriteBatch& batch, std::uint32_t jog_velocity) {

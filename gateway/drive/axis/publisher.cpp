@@ -225,7 +225,7 @@ std::string unarmed(const AxisCore& core) {
   for (const model::ObjectWrite& setup : core.drive.setup) {
     const auto& loss = core.drive.loss_objects;
     const ObjectState& s = core.store[setup.object];
-    if (std::find(loss.begin(), loss.end(), setup.object) == loss.end() || (s.known && s.number == setup.raw)) continue;
+    if (std::ranges::find(loss, setup.object) == loss.end() || (s.known && s.number == setup.raw)) continue;
     return fmt::format(": {} (0x{:04X}) could not be set up", core.object(setup.object).name,
                        core.object(setup.object).address.index);
   }

@@ -49,13 +49,12 @@ std::optional<std::uint64_t> Telling::refused(const WriteBatch& batch, Errc code
 
 std::optional<std::uint64_t> Telling::of_stream(const Request& request, Duration pause, LineBucket& bucket,
                                                 Instant now) {
-  auto stream = std::find_if(streams_.begin(), streams_.end(), [&](const Stream& s) { return s.request == request; });
+  auto stream = std::ranges::find_if(streams_, [&](const Stream& s) { return s.request == request; });
   if (stream == streams_.end()) {
     if (streams_.size() < streams_.capacity()) {
       stream = streams_.insert(streams_.end(), Stream{});
     } else {
-      stream = std::min_element(streams_.begin(), streams_.end(),
-                                [](const Stream& a, const Stream& b) { return a.newest < b.newest; });
+      stream = std::ranges::min_element(streams_, [](const Stream& a, const Stream& b) { return a.newest < b.newest; });
       *stream = {};
     }
     stream->request = request;

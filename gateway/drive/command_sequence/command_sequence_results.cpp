@@ -46,9 +46,8 @@ void CommandSequence::on_result(const bus::ExchangeResult& result, Instant sent_
 
 bool CommandSequence::is_command_of_motion(model::ObjectId object) const {
   const auto& bindings = core_.model.bindings;
-  return moves_by_write(core_, object) && std::any_of(bindings.begin(), bindings.end(), [&](const model::Binding& b) {
-           return b.object == object && b.writable;
-         });
+  return moves_by_write(core_, object) &&
+         std::ranges::any_of(bindings, [&](const model::Binding& b) { return b.object == object && b.writable; });
 }
 
 void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& result, Instant sent_at, bool trusted) {

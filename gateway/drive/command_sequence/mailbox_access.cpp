@@ -63,8 +63,7 @@ Outcome MailboxAccess::take(const model::DriveModel& drive, const ObjectRequest&
   }
   // Neighbours may have been read in the same request.
   const ObjectAddress asked{request.index, request.subindex};
-  const auto field = std::find_if(result.fields.begin(), result.fields.end(),
-                                  [&](const bus::ReplyField& f) { return f.object == asked; });
+  const auto field = std::ranges::find_if(result.fields, [&](const bus::ReplyField& f) { return f.object == asked; });
   if (field == result.fields.end()) return {Errc::bad_reply, 0};
   answer.object_data = field->raw;
   answer.object_size = field->size;

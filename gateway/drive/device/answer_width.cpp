@@ -9,16 +9,15 @@ bool moves_by(const model::DriveModel& model, model::ObjectId object) {
   const auto same = [&](model::ObjectId bound) {
     if (bound == object) return true;
     const auto& aliases = model.object(object).aliases;
-    return std::find(aliases.begin(), aliases.end(), bound) != aliases.end();
+    return std::ranges::find(aliases, bound) != aliases.end();
   };
   const auto counts = [&](const model::Binding& binding) {
     const Kind kind = row(binding.quantity).kind;
     const bool of_motion = kind == Kind::position || kind == Kind::velocity || kind == Kind::acceleration;
     return of_motion && same(binding.object);
   };
-  return std::any_of(model.axes.begin(), model.axes.end(), [&](const model::AxisModel& axis) {
-    return std::any_of(axis.bindings.begin(), axis.bindings.end(), counts);
-  });
+  return std::ranges::any_of(model.axes,
+                             [&](const model::AxisModel& axis) { return std::ranges::any_of(axis.bindings, counts); });
 }
 
 std::optional<std::int64_t> narrowed(const model::DriveModel& model, model::ObjectId id, const bus::ReplyField& field) {

@@ -44,7 +44,7 @@ void BringUp::begin() {
 }
 
 bool BringUp::any_enabled(const ObjectStore& store) const {
-  return std::any_of(model_.axes.begin(), model_.axes.end(), [&](const model::AxisModel& axis) {
+  return std::ranges::any_of(model_.axes, [&](const model::AxisModel& axis) {
     const ObjectState& s = store[axis.statusword];
     return s.known && model::holds_motor(model::state_of(static_cast<std::uint16_t>(s.number)));
   });

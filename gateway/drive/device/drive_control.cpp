@@ -92,7 +92,7 @@ bool DriveControl::may_repeat(const Turn& turn) const {
 // follows goes by. A motor that trips between the two is turned on again by that frame; no protocol of this drive can
 // tell sooner.
 bool DriveControl::looked_just_now(Instant now) const {
-  return std::all_of(model_.axes.begin(), model_.axes.end(), [&](const model::AxisModel& axis) {
+  return std::ranges::all_of(model_.axes, [&](const model::AxisModel& axis) {
     if (!axis.virtual_axis) return true;
     const ObjectState& state = store_[axis.virtual_axis->enabled.object];
     return shown_lately(axis.virtual_axis->enabled.object, now) && state.exchange == store_.exchange();

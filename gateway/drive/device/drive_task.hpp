@@ -4,6 +4,7 @@
 // decides: what there is to decide is pure, and a task asks it (DriveReads, BringUp, DriveControl, DriveEnd and so on).
 #pragma once
 
+#include <boost/noncopyable.hpp>
 #include <memory>
 #include <string>
 #include <utility>
@@ -90,11 +91,9 @@ struct Ended {
   model::ObjectId written = model::kNoObject;  ///< none: it was no write of an object of the model
 };
 
-class DriveTask {
+class DriveTask : boost::noncopyable {
  public:
   explicit DriveTask(DriveCore& core) : core_(core) {}
-  DriveTask(const DriveTask&) = delete;
-  DriveTask& operator=(const DriveTask&) = delete;
   virtual ~DriveTask() = default;
 
   [[nodiscard]] bool owns(bus::JobId job) const { return job != 0 && job == job_; }

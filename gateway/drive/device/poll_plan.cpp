@@ -9,7 +9,7 @@ namespace {
 
 void add(std::vector<PollItem>& items, model::ObjectId object, model::PollClass poll_class) {
   if (object == model::kNoObject) return;
-  const auto found = std::find_if(items.begin(), items.end(), [&](const PollItem& i) { return i.object == object; });
+  const auto found = std::ranges::find_if(items, [&](const PollItem& i) { return i.object == object; });
   if (found == items.end())
     items.push_back({object, poll_class, false});
   else
@@ -19,9 +19,7 @@ void add(std::vector<PollItem>& items, model::ObjectId object, model::PollClass 
 /// It comes by itself, in a known beat, and is asked for never; but the state is.
 bool comes_unsolicited(const model::DriveModel& model, model::ObjectId id) {
   if (model.unsolicited.every == Duration{}) return false;
-  const auto has = [id](const std::vector<model::ObjectId>& list) {
-    return std::find(list.begin(), list.end(), id) != list.end();
-  };
+  const auto has = [id](const std::vector<model::ObjectId>& list) { return std::ranges::find(list, id) != list.end(); };
   const bool state = std::ranges::any_of(model.axes, [&](const auto& axis) { return has(axis.state_sources); });
   return !state && has(model.unsolicited.objects);
 }
@@ -61,7 +59,7 @@ std::vector<PollItem> poll_items(const model::DriveModel& model) {
   });
   for (PollItem& item : items)
     for (const model::TpdoProperties& tpdo : model.canopen.tpdos)
-      item.mapped = item.mapped || std::find(tpdo.map.begin(), tpdo.map.end(), item.object) != tpdo.map.end();
+      item.mapped = item.mapped || std::ranges::find(tpdo.map, item.object) != tpdo.map.end();
   return items;
 }
 

@@ -23,9 +23,8 @@ std::vector<PlannedRead> planned_reads(const model::DriveModel& model) {
     const model::ObjectDef& object = model.object(item.object);
     bus::Exchange exchange{model.node, bus::Access::read, object.address, object.size, 0};
     blocks.widen(exchange, [](model::ObjectId) { return true; });
-    const auto same = std::find_if(out.begin(), out.end(), [&](const PlannedRead& read) {
-      return !exchange.more.empty() && read.exchange == exchange;
-    });
+    const auto same = std::ranges::find_if(
+        out, [&](const PlannedRead& read) { return !exchange.more.empty() && read.exchange == exchange; });
     if (same == out.end())
       out.push_back({item.poll_class, exchange});
     else
@@ -61,7 +60,7 @@ void ReadBlocks::group_answers() {
     if (objects[i].emulated || !objects[i].readable || grouped) continue;
     Block block{{}, 0, true};
     for (std::size_t k = i; k < objects.size() && block.objects.size() < bus::kMaxReplyFields; ++k) {
-      const bool there = std::any_of(block.objects.begin(), block.objects.end(), [&](model::ObjectId id) {
+      const bool there = std::ranges::any_of(block.objects, [&](model::ObjectId id) {
         return model_.object(id).address == objects[k].address;  // an alias comes with the other
       });
       if (!objects[k].emulated && objects[k].readable && same_query(objects[i], objects[k]) && !there)

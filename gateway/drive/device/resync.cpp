@@ -40,7 +40,7 @@ void Resync::lost(const bus::Exchange& exchange, Instant now) {
   const Likeness like = of(exchange);
   // Another read was lost meanwhile: its reply is as old as those that were counted out. A write's reply is no read's.
   if (counting_ && exchange.access != bus::Access::write && !(counting_->like == like)) counting_.reset();
-  const auto known = std::find_if(lost_.begin(), lost_.end(), [&](const Lost& lost) { return lost.like == like; });
+  const auto known = std::ranges::find_if(lost_, [&](const Lost& lost) { return lost.like == like; });
   if (known != lost_.end())
     known->times = std::min(known->times + 1, kMaxOwed);
   else if (lost_.size() < kMaxLost)
@@ -55,13 +55,11 @@ void Resync::refused(const bus::Exchange& exchange, Instant now) {
 }
 
 int Resync::owed(const Likeness& like) const {
-  const auto known = std::find_if(lost_.begin(), lost_.end(), [&](const Lost& lost) { return lost.like == like; });
+  const auto known = std::ranges::find_if(lost_, [&](const Lost& lost) { return lost.like == like; });
   return known == lost_.end() ? 0 : known->times;
 }
 
-bool Resync::is_refused(const Likeness& like) const {
-  return std::find(refused_.begin(), refused_.end(), like) != refused_.end();
-}
+bool Resync::is_refused(const Likeness& like) const { return std::ranges::find(refused_, like) != refused_.end(); }
 
 std::optional<model::ResyncRead> Resync::candidate() const {
   std::optional<model::ResyncRead> unanswered;

@@ -19,14 +19,14 @@ Errc admit_command(const AxisCore& core, Command command) {
 // The steps of a command that is nothing but this one write.
 bool is_alone(const model::Steps& steps, model::ObjectId id, std::int64_t number) {
   const auto writes = [](const model::Step& step) { return step.verb == model::Step::Verb::write; };
-  const auto first = std::find_if(steps.begin(), steps.end(), writes);
-  return first != steps.end() && std::count_if(steps.begin(), steps.end(), writes) == 1 && first->object == id &&
+  const auto first = std::ranges::find_if(steps, writes);
+  return first != steps.end() && std::ranges::count_if(steps, writes) == 1 && first->object == id &&
          first->source == model::Step::Source::literal && first->literal == number;
 }
 
 bool belongs_to_a_command(const AxisCore& core, model::ObjectId id) {
-  return std::any_of(core.model.commands.begin(), core.model.commands.end(), [&](const auto& def) {
-    return def && std::any_of(def->steps.begin(), def->steps.end(), [&](const model::Step& step) {
+  return std::ranges::any_of(core.model.commands, [&](const auto& def) {
+    return def && std::ranges::any_of(def->steps, [&](const model::Step& step) {
              return step.verb == model::Step::Verb::write && step.object == id;
            });
   });
@@ -40,8 +40,7 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
   const auto guarded = [&](model::ObjectId id) {
     const auto& bindings = core.model.bindings;
     return core.object(id).mailbox_reads_only || belongs_to_a_command(core, id) ||
-           std::any_of(bindings.begin(), bindings.end(),
-                       [&](const model::Binding& b) { return b.object == id && b.writable; });
+           std::ranges::any_of(bindings, [&](const model::Binding& b) { return b.object == id && b.writable; });
   };
   for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
     const model::ObjectDef& object = core.drive.objects[i];
@@ -126,11 +125,10 @@ bool set_position_fits(const AxisCore& core, std::int32_t value) {
     return raw && object.printed.holds(*raw);
   };
   const auto& def = core.model.command(Command::set_position);
-  return !def ||
-         (std::all_of(def->steps.begin(), def->steps.end(), fits) &&
-          std::all_of(def->variants.begin(), def->variants.end(), [&](const model::CommandDef::Variant& variant) {
-            return std::all_of(variant.steps.begin(), variant.steps.end(), fits);
-          }));
+  return !def || (std::ranges::all_of(def->steps, fits) &&
+                  std::ranges::all_of(def->variants, [&](const model::CommandDef::Variant& variant) {
+                    return std::ranges::all_of(variant.steps, fits);
+                  }));
 }
 
 // What a row of the register map has given to the write batch, alone. No value: nothing.
@@ -268,13 +266,12 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
     if (!binding->scaled) return Errc::still_in_setup;
     if (!binding->to_raw(sp.value, core.object(binding->object))) return Errc::bad_value;
     const auto& methods = core.model.homing_methods;
-    if (sp.quantity == Quantity::homing_method && std::find(methods.begin(), methods.end(), sp.value) == methods.end())
+    if (sp.quantity == Quantity::homing_method && std::ranges::find(methods, sp.value) == methods.end())
       return Errc::bad_value;
   }
   if (batch.mode) {
     const auto& modes = core.model.modes;
-    if (std::none_of(modes.begin(), modes.end(), [&](const auto& m) { return m.first == *batch.mode; }))
-      return Errc::bad_value;
+    if (std::ranges::none_of(modes, [&](const auto& m) { return m.first == *batch.mode; })) return Errc::bad_value;
   }
   return limits_in_order(core, batch) ? Errc::ok : Errc::bad_value;
 }
@@ -359,7 +356,7 @@ Translated as_quantities(const AxisCore& core, const WriteBatch& batch) {
     out.single_controlword = true;
   } else if (id == core.model.mode) {
     const auto& modes = core.model.modes;
-    const auto known = std::find_if(modes.begin(), modes.end(), [&](const auto& m) { return m.second == number; });
+    const auto known = std::ranges::find_if(modes, [&](const auto& m) { return m.second == number; });
     if (known == modes.end()) return {batch, Errc::bad_value};
     out.mode = known->first;
   } else {
@@ -394,7 +391,7 @@ bus::BusJob job_for(const AxisCore& core, const WriteBatch& batch, bool stop) {
     if (is_target(sp.quantity)) job.survives_stop = false;
     job.writes.push_back(core.object(core.model.binding(sp.quantity)->object).address);
   }
-  std::sort(job.writes.begin(), job.writes.end());
+  std::ranges::sort(job.writes);
   return job;
 }
 

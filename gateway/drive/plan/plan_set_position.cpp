@@ -27,7 +27,7 @@ bool add_wait_for_counter(const AxisCore& core, Plan& plan) {
 }
 
 bool writes_at(const AxisCore& core, const Plan& plan, model::ObjectId object) {
-  return object != model::kNoObject && std::any_of(plan.actions.begin(), plan.actions.end(), [&](const Action& a) {
+  return object != model::kNoObject && std::ranges::any_of(plan.actions, [&](const Action& a) {
            return a.kind == Action::Kind::write && same_place(core, a.object, object);
          });
 }

@@ -49,7 +49,7 @@ bool limits_in_order(const AxisCore& core, const WriteBatch& batch) {
   const auto is_limit = [](const Setpoint& sp) {
     return sp.quantity == Quantity::position_limit_min || sp.quantity == Quantity::position_limit_max;
   };
-  if (std::none_of(batch.setpoints.begin(), batch.setpoints.end(), is_limit)) return true;
+  if (std::ranges::none_of(batch.setpoints, is_limit)) return true;
   const auto low = limit_after(core, batch, Quantity::position_limit_min);
   const auto high = limit_after(core, batch, Quantity::position_limit_max);
   return !low || !high || *low <= *high;
@@ -133,12 +133,12 @@ bool is_target(Quantity quantity) {
 
 bool same_place(const AxisCore& core, model::ObjectId a, model::ObjectId b) {
   const auto& aliases = core.object(a).aliases;
-  return a == b || std::find(aliases.begin(), aliases.end(), b) != aliases.end();
+  return a == b || std::ranges::find(aliases, b) != aliases.end();
 }
 
 bool writes(const Plan& plan, model::ObjectId object) {
-  return std::any_of(plan.actions.begin(), plan.actions.end(),
-                     [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
+  return std::ranges::any_of(plan.actions,
+                             [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
 }
 
 void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
@@ -147,8 +147,8 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   // of them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
   const auto& bindings = core.model.bindings;
   for (const model::ObjectId id : core.model.zero_before_enable)
-    if (std::none_of(bindings.begin(), bindings.end(),
-                     [&](const model::Binding& b) { return b.writable && same_place(core, id, b.object); }))
+    if (std::ranges::none_of(bindings,
+                             [&](const model::Binding& b) { return b.writable && same_place(core, id, b.object); }))
       add_running_target(core, id, 0, plan, look_again);
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
     const model::Binding* binding = core.model.binding(q);
@@ -235,9 +235,8 @@ bool may_be_written(const AxisCore& core, const Setpoint& sp, const AxisFacts& f
   const auto raw = raw_of(core, *binding, {sp.value, sp.exact});
   const ObjectState& state = core.store[binding->object];
   const auto& repeated = core.model.keep_alive;
-  const bool kept_alive = std::any_of(repeated.begin(), repeated.end(), [&](const auto& row) {
-    return row.first == facts.mode && row.second == binding->object;
-  });
+  const bool kept_alive = std::ranges::any_of(
+      repeated, [&](const auto& row) { return row.first == facts.mode && row.second == binding->object; });
   return !(kept_alive && state.cached && raw && state.number == *raw);
 }
 

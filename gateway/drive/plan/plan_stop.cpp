@@ -24,7 +24,7 @@ model::Condition not_enabled(const AxisCore& core) {
 
 // Kinco's halt word is 0x010F: its low bits ask for "enabled", also of a drive that is not.
 bool hold_an_enabling_word(const AxisCore& core, const model::Steps& steps) {
-  return std::any_of(steps.begin(), steps.end(), [&](const model::Step& s) {
+  return std::ranges::any_of(steps, [&](const model::Step& s) {
     return s.verb == model::Step::Verb::write && s.source == model::Step::Source::literal &&
            is_enabling_word(core, s.object, s.literal);
   });

@@ -60,8 +60,7 @@ void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Pl
 
 Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for) {
   const auto& modes = core.model.modes;
-  if (std::none_of(modes.begin(), modes.end(), [&](const auto& m) { return m.first == mode; }))
-    return Plan::refuse(Errc::bad_value);
+  if (std::ranges::none_of(modes, [&](const auto& m) { return m.first == mode; })) return Plan::refuse(Errc::bad_value);
   Plan plan;
   if (core.mode_in_force() == mode) return plan;
   const AxisFacts facts = core.facts();

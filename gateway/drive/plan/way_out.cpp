@@ -11,7 +11,7 @@ namespace {
 
 // A step of the profile writes exactly this.
 bool has_write(const model::Steps& steps, model::ObjectId object, std::int64_t number) {
-  return std::any_of(steps.begin(), steps.end(), [&](const model::Step& step) {
+  return std::ranges::any_of(steps, [&](const model::Step& step) {
     return step.verb == model::Step::Verb::write && step.source == model::Step::Source::literal &&
            step.object == object && step.literal == number;
   });
@@ -21,7 +21,7 @@ bool writes(const AxisCore& core, Command command, model::ObjectId object, std::
   const auto& def = core.model.command(command);
   if (!def) return false;
   return has_write(def->steps, object, number) ||
-         std::any_of(def->variants.begin(), def->variants.end(), [&](const model::CommandDef::Variant& variant) {
+         std::ranges::any_of(def->variants, [&](const model::CommandDef::Variant& variant) {
            return has_write(variant.steps, object, number);
          });
 }

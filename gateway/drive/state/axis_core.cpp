@@ -204,7 +204,7 @@ model::ObjectId AxisCore::to_read(model::ObjectId id) const {
     if (store[a].refused != store[b].refused) return store[b].refused;
     return store[a].exchange < store[b].exchange;
   };
-  return *std::min_element(model.state_sources.begin(), model.state_sources.end(), older);
+  return *std::ranges::min_element(model.state_sources, older);
 }
 
 bool AxisCore::cannot_deenergise() const {
@@ -257,7 +257,7 @@ std::optional<std::int64_t> AxisCore::homing_method() const {
 // --- Faults --------------------------------------------------------------------------------------------------------
 
 bool tells_state(const model::AxisModel& model, model::ObjectId id) {
-  return std::find(model.state_sources.begin(), model.state_sources.end(), id) != model.state_sources.end();
+  return std::ranges::find(model.state_sources, id) != model.state_sources.end();
 }
 
 bool AxisCore::names_cause(model::ObjectId id) const {

@@ -17,7 +17,7 @@ std::string named_by(const model::AlarmRow& row) {
 std::string named_by_code(const AxisCore& core, std::uint16_t code) {
   if (code == 0) return "the drive names no cause";
   const auto& rows = core.drive.alarms;
-  const auto row = std::find_if(rows.begin(), rows.end(), [code](const model::AlarmRow& r) { return r.code == code; });
+  const auto row = std::ranges::find_if(rows, [code](const model::AlarmRow& r) { return r.code == code; });
   const std::string sent = fmt::format("error code 0x{:04X}", code);
   return row == rows.end() ? sent + ", which the profile does not list" : sent + ": " + named_by(*row);
 }

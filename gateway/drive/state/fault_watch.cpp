@@ -8,7 +8,7 @@ namespace axisgate::drive {
 CauseObjects cause_objects(const model::AxisModel& model) {
   CauseObjects out;
   const auto add = [&](model::ObjectId id) {
-    const bool has = std::find(out.begin(), out.end(), id) != out.end();
+    const bool has = std::ranges::find(out, id) != out.end();
     if (id != model::kNoObject && !has && out.size() < out.capacity()) out.push_back(id);
   };
   for (const model::ObjectId word : model.fault_words) add(word);
@@ -35,8 +35,8 @@ void FaultWatch::observe(const Seen& seen) {
     over_ = true;
     emergency_ = {};  // it was this fault's, and names none that comes after
   }
-  fresh_ = std::all_of(seen.words.begin(), seen.words.end(),
-                       [this](const Word& w) { return w.refused || counts(w.tells_state, w.exchange); });
+  fresh_ =
+      std::ranges::all_of(seen.words, [this](const Word& w) { return w.refused || counts(w.tells_state, w.exchange); });
   // No fault came of it.
   const bool after = seen.statusword_exchange > emergency_.exchange && seen.at - emergency_.at >= kCauseTime;
   if (!fault_ && emergency_.code != 0 && after) emergency_ = {};

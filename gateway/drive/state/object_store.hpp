@@ -147,7 +147,7 @@ class ObjectStore {
   [[nodiscard]] bool same_place(std::size_t id, model::ObjectId other) const {
     if (other == model::kNoObject) return false;
     const auto& aliases = aliases_[other];
-    return id == other || std::find(aliases.begin(), aliases.end(), id) != aliases.end();
+    return id == other || std::ranges::find(aliases, id) != aliases.end();
   }
   std::vector<ObjectState> states_;
   std::vector<Duration> periods_;
