@@ -74,6 +74,8 @@ bool Contract::answered(int request, const std::set<int>& exceptions) {
     // An enable of which nobody knows: whether it is taken back once it shows is not said (ANS-6).
     constexpr std::int64_t kTakenBackMs = 6000;
     if (lost && pending.enables && exceptions.contains(kNoAnswer)) next.taken_back_by_ms = sight_.now_ms + kTakenBackMs;
+    // Whoever asked is gone: whether that is withdrawn by a stop, also what was refused, is not said.
+    if (exceptions.contains(kNoAnswer)) next.stale_speed = true;
     if (withdrawn && !expected) {
       const World before = next;
       next.motor = Motor::stands;

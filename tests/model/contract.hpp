@@ -147,6 +147,7 @@ struct World {
   bool other_mode = false;                 ///< it selected torque or homing: how a drive halts there is its own affair
   bool start_bit = false;                  ///< bit 4 may be set in the controlword in effect
   bool stale_speed = false;                ///< the speed was accepted before a stop
+  bool surely_stale = false;               ///< and by nobody beside it
   Motor motor = Motor::stands;
   std::int64_t target = 0;        ///< of the move
   std::int64_t fastest = kNever;  ///< that the motor may turn in this motion; kNever: nobody can tell

@@ -118,7 +118,7 @@ void Judge::accept(std::uint16_t offset, std::int64_t value, bool claims) {
     world_.motor = Motor::unknown;
   // Whether a jog that runs goes on at another jog_velocity is not said.
   if (offset == row::jog_velocity && differs && world_.jog != 0 && readings_.other()) world_.motor = Motor::unknown;
-  if (offset == row::target_velocity) world_.stale_speed = false;
+  if (offset == row::target_velocity) speed_accepted();
   if (offset == row::profile_velocity) world_.fastest = std::max(world_.fastest, value);
   if (differs && (offset == row::target_position || offset == row::target_velocity)) {
     me().command.changed = true;
@@ -205,6 +205,7 @@ void Judge::stopped(bool asserted) {
   world_.jog = 0;
   world_.started_ms = seen_.now_ms;  // what a drive shows of standing still lags behind
   world_.stale_speed = true;
+  world_.surely_stale = asserted && !speed_here_;
   // 3.3 Edges speaks of "another client's stop"; whether a disabling coil or controlword is one (3.4 Stops: "nothing
   // else") is open.
   const bool spoils = asserted || readings_.other();

@@ -88,6 +88,7 @@ class Judge {
   void stopped(bool asserted);
   void leave_motion();
   void halted(bool asserted);
+  void speed_accepted();
   void renew_speed();
   [[nodiscard]] std::int64_t fastest_of(std::int64_t start) const;
   [[nodiscard]] bool at_rest() const;
@@ -118,6 +119,7 @@ class Judge {
   const Seen& seen_;
   std::size_t client_;
   bool refused_foreign_ = false;
+  bool speed_here_ = false;    ///< a target_velocity stands in this request
   bool changes_mode_ = false;  ///< before its command: what becomes of a motion is not said
   bool stopped_ = false;
   bool takes_over_ = false;

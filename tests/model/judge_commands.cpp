@@ -77,11 +77,17 @@ void Judge::halted(bool asserted) {
   world_.ladder = 0;
 }
 
+void Judge::speed_accepted() {
+  world_.stale_speed = seen_.troubled;  // what ends in trouble nobody outside knows
+  world_.surely_stale = false;
+  speed_here_ = true;
+}
+
 // 3.3 What asks: "the last accepted set-point is the one that every start uses"; 3.4: after a stop "velocity, torque
-// and start are needed anew". Where none came since, both are allowed.
+// and start are needed anew". Where none came since, a raw word runs at that or at 0.
 void Judge::renew_speed() {
   if (world_.stale_speed && readings_.other()) world_.accepted[row::target_velocity] = 0;
-  world_.stale_speed = false;
+  world_.stale_speed = world_.surely_stale = false;
 }
 
 /// It stands, and nothing is under way.
@@ -107,7 +113,10 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
     leave_motion();
     // Commands 9 and 10 need what is not judged here: a known max_velocity, a homing method since bring-up. Whether one
     // was refused before it claimed, or by the drive, is not judged either.
-    const bool refused = number > kRun && !homes && readings_.other();
+    // G1: "a start whose target does not hold is refused"; whether one that came beside a stop holds is not said.
+    const bool no_target = number == kRun && (world_.stale_speed || !world_.accepted.contains(row::target_velocity)) &&
+                           (world_.surely_stale || readings_.other());
+    const bool refused = no_target || (number > kRun && !homes && readings_.other());
     if (!refused || world_.owner == client_ || readings_.other()) claim();
     // 3.3 Not new: "or another client".
     for (std::size_t c = 0; c < world_.clients.size(); ++c) {
@@ -142,7 +151,7 @@ void Judge::command(std::int64_t number, Item& item, Verdict& verdict) {
       return world_.accepted.contains(offset) ? world_.accepted[offset] : std::int64_t{0};
     };
     world_.motor = number > kRun ? Motor::unknown : number == kRun ? Motor::runs : Motor::moves;
-    if (number == 8) renew_speed();
+    if (number == kRun) world_.stale_speed = world_.surely_stale = false;
     if (number == 6) world_.target = of(row::target_position);
     if (number == 7) world_.target = seen_.position + of(row::target_position);
     // What a gateway that is new reads from the drive nobody has accepted.

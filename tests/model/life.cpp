@@ -198,6 +198,7 @@ void Contract::trouble_begins() {
   for (auto& [number, asked] : asked_) asked.troubled = true;
   for (World& world : worlds_) {
     world.mode.reset();
+    world.stale_speed = true;
     world.accepted.erase(row::homing_method);  // 3.4, command 10: "since bring-up"
     world.broken = world.motor != Motor::stands ||
                    std::ranges::any_of(world.earlier, [](const Motion& m) { return m.kind != Motor::stands; });
@@ -218,6 +219,7 @@ void Contract::trouble_ends() {
   for (World& world : worlds_) {
     world.changed_ms = sight_.now_ms;
     world.mode.reset();
+    world.stale_speed = true;
     world.latch_unsure = true;  // whether what ended out of sight was enabled then the gateway has not seen
     // Of an axis whose state is the gateway's own nobody knows what it has made of a loss.
     world.adopted = options_.by_gateway && world.enabled;
@@ -252,6 +254,7 @@ void Contract::drive_restarted() {
     const World before = world;
     world.motor = Motor::stands;
     world.jog = 0;
+    world.stale_speed = true;
     world.enabled = world.faulted = false;
     world.ladder = 0;
     world.other_mode = true;  // which one it begins with is its own affair
@@ -275,7 +278,7 @@ void Contract::commanded_by_another() {
 
 void Contract::drive_tripped() {
   drive_restarted();
-  for (World& world : worlds_) world.faulted = true;
+  for (World& world : worlds_) world.faulted = world.stale_speed = true;
 }
 
 // A gateway that has died commands nothing; a motor goes on until its drive misses the master.

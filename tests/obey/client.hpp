@@ -25,6 +25,7 @@ struct Answer {
 };
 void PrintTo(const Answer& answer, std::ostream* out);
 
+inline constexpr std::int64_t kNoState = 9;  // result: the axis's state does not allow it
 inline constexpr std::uint8_t kOk = 0, kNoSuchRow = 2, kBadValue = 3, kFailed = 4, kNotNow = 6;
 
 /// Offsets to read.

@@ -202,6 +202,7 @@ TEST_P(GoesOn, AHaltMakesNoStartAcceptable) {
   ready();
   ASSERT_TRUE(plant_->start_endless(plant_->a));
   lose_link();
+  static_cast<void>(plant_->set_endless(plant_->b));
   const bool before = plant_->b.command(plant_->endless_command()).ok();
   ASSERT_EQ(plant_->a.command(kHalt), kOk);
   ASSERT_TRUE(plant_->comes_to_stand());

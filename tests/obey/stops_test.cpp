@@ -133,7 +133,6 @@ TEST_P(Stops, AlwaysInASingleWrite) {
 
 // What was asked for last is what register 25 tells of, whichever ends first.
 TEST_P(Stops, ThatEndAfterALaterCommandWasRefusedLeaveItsResult) {
-  constexpr std::int64_t kNoState = 9;
   ASSERT_EQ(plant_.set_endless(a_), kOk);
   a_.begin(block(row::controlword, row::command_id,
                  {{row::controlword, 6}, {row::command, kQuickStop}, {row::command_id, 1}}));
@@ -153,7 +152,7 @@ TEST_P(Stops, AreDoneWhenTheMotorWasSeenToObey) {
 TEST_P(Stops, StayLatchedThroughADisable) {
   constexpr std::uint16_t kRowOfAlarms = 34;
   constexpr unsigned kLatchAlarm = 7;
-  constexpr std::int64_t kReset = 5, kNoState = 9, kEnableOperation = 15;
+  constexpr std::int64_t kReset = 5, kEnableOperation = 15;
   const auto bit = [&](std::uint16_t row, std::int64_t number) {
     return (static_cast<std::uint32_t>(a_.wide(row)) >> number & 1U) != 0;
   };

@@ -264,8 +264,8 @@ TEST_P(Speeds, ThatAreTheSameRunAgainInABlockWithANewId) {
   }
 }
 
-// 3.4: after a stop "velocity, torque and start are needed anew". 3.3 What asks says that the last accepted set-point
-// is the one that every start uses: of the two, the one that cannot move the motor.
+// 3.4: after a stop "velocity, torque and start are needed anew"; G1: "a start whose target does not hold is refused
+// (0x04, result 9, log: write the target anew)".
 TEST_P(Speeds, AcceptedBeforeAHaltAreNeededAnew) {
   ASSERT_EQ(plant_.a.command(0, 1), kOk);
   ASSERT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
@@ -273,11 +273,13 @@ TEST_P(Speeds, AcceptedBeforeAHaltAreNeededAnew) {
   ASSERT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
   ASSERT_EQ(plant_.a.command(kHalt, 3), kOk);
   ASSERT_TRUE(plant_.comes_to_stand());
-  static_cast<void>(plant_.a.command(kRun, 4));
+  EXPECT_EQ(plant_.a.command(kRun, 4), kFailed);
+  EXPECT_EQ(plant_.a.result(), kNoState);
+  EXPECT_TRUE(plant_.logged("write target_velocity anew"));
   plant_.run(500ms);
   EXPECT_TRUE(plant_.stands()) << plant_.velocity();
-  static_cast<void>(plant_.a.row(row::target_velocity, kSpeed));
-  static_cast<void>(plant_.a.command(kRun, 5));
+  EXPECT_EQ(plant_.a.row(row::target_velocity, kSpeed), kOk);
+  EXPECT_EQ(plant_.a.command(kRun, 5), kOk);
   EXPECT_TRUE(plant_.reaches(kSpeed)) << plant_.velocity();
 }
 

@@ -144,7 +144,8 @@ WriteBatch request(Subject subject, Command command, End end) {
   const bool moves = command == Command::move_absolute || command == Command::move_relative;
   if (moves) batch.setpoints.push_back({Quantity::target_position, 5'000});
   if (command == Command::run_velocity) batch.setpoints.push_back({Quantity::target_velocity, 100'000});
-  if (command == Command::run_torque) batch.setpoints.push_back({Quantity::max_velocity, 1'000'000});
+  if (command == Command::run_torque)
+    batch.setpoints = {{Quantity::max_velocity, 1'000'000}, {Quantity::target_torque, 0}};
   if (command == Command::home) batch.setpoints.push_back({Quantity::homing_method, 19});
   if (moves && !is_keya(subject)) batch.setpoints.push_back({Quantity::profile_velocity, 600'000});
   return batch;

@@ -77,20 +77,21 @@ std::vector<Commanded> all_commanded(Subject subject) {
   }
   WriteBatch mode;
   mode.mode = 3;
-  out.insert(out.end(), {
-                            {"halt in position", moving, with_command(Command::halt), true, false, true},
-                            {"fault reset", faulted, with_command(Command::fault_reset)},
-                            {"move after halt", halted,
-                             with_command(Command::move_absolute, {{Quantity::target_position, 30'000}}), true},
-                            {"torque", enabled, with_command(Command::run_torque)},
-                            {"set position", enabled, with_command(Command::set_position)},
-                            {"save", disabled, with_command(Command::save_parameters)},
-                            {"raw mode", enabled, mode},
-                            {"raw enable", disabled, with_controlword(0x000F), false, true},
-                            {"raw stop", running, with_controlword(0x0006), true, false, true},
-                            {"mailbox read", enabled, for_object({false, 0x2601, 0, 2, 0})},
-                            {"mailbox write", enabled, for_object({true, 0x2010, 0x0F, 2, 4})},
-                        });
+  out.insert(out.end(),
+             {
+                 {"halt in position", moving, with_command(Command::halt), true, false, true},
+                 {"fault reset", faulted, with_command(Command::fault_reset)},
+                 {"move after halt", halted,
+                  with_command(Command::move_absolute, {{Quantity::target_position, 30'000}}), true},
+                 {"torque", enabled, with_command(Command::run_torque, {{Quantity::target_torque, 50}}), true},
+                 {"set position", enabled, with_command(Command::set_position)},
+                 {"save", disabled, with_command(Command::save_parameters)},
+                 {"raw mode", enabled, mode},
+                 {"raw enable", disabled, with_controlword(0x000F), false, true},
+                 {"raw stop", running, with_controlword(0x0006), true, false, true},
+                 {"mailbox read", enabled, for_object({false, 0x2601, 0, 2, 0})},
+                 {"mailbox write", enabled, for_object({true, 0x2010, 0x0F, 2, 4})},
+             });
   return out;
 }
 

@@ -24,11 +24,16 @@ bool told_by_its_server(const WriteBatch& batch, Errc code) {
   return modbus && (code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden);
 }
 
-/// ": alarm local_control: ...", of an enable or a start that is refused for what an alarm says.
-std::string alarm_against(const AxisCore& core, AxisNumber axis, const WriteBatch& batch, Errc code) {
+/// ": alarm local_control: ...", of an enable or a start that is refused for what an alarm says, or for want of a
+/// target.
+std::string why_against(const AxisCore& core, AxisNumber axis, const WriteBatch& batch, Errc code) {
   const bool by_alarm = code == Errc::state_unsuitable || code == Errc::identity_mismatch;
   if (by_alarm && starts_motion(core, batch) && core.alarm(AxisAlarm::units_disagree))
     return ": alarm units_disagree: a fault_reset ends it, once its cause is mended";
+  const auto target = target_of(batch.command);
+  const bool runs = target == Quantity::target_velocity || target == Quantity::target_torque;
+  if (code == Errc::state_unsuitable && runs && !core.running_target(*target) && core.motion.may_start(core.facts()))
+    return fmt::format(": write {} anew, none was asked for since motions were ended last", row(*target).name);
   if (!by_alarm || !asks_to_enable(batch)) return {};
   const std::string alarm = against_enable(core.alarms, axis);
   return alarm.empty() ? alarm : ": " + alarm;
@@ -74,7 +79,7 @@ void AxisEvents::refused(const WriteBatch& asked, const BatchResult& result) {
   const std::string whose = outcome.code == Errc::not_owner && owner ? "; its owner is " + owner->name : std::string();
   event(EventKind::command, static_cast<std::uint32_t>(asked.command),
         fmt::format("{}: {} is refused: {}{}{}{}{}", asked.life->name, command_text(core_, asked, image_.jog_velocity),
-                    outcome_text(asked, outcome), alarm_against(core_, image_.number, asked, outcome.code),
+                    outcome_text(asked, outcome), why_against(core_, image_.number, asked, outcome.code),
                     result.limit.empty() ? result.limit : "; its limit is " + result.limit, whose,
                     left_out_text(*left_out)));
 }
@@ -94,7 +99,7 @@ void AxisEvents::ended(const Pending& pending, const Outcome& outcome) {
   event(EventKind::command, static_cast<std::uint32_t>(batch.command),
         fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client",
                     beside ? "what stood beside " : "", what, outcome_text(batch, outcome),
-                    alarm_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
+                    why_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
 }
 
 void AxisEvents::not_reached(const Pending& pending) {

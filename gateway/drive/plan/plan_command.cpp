@@ -16,8 +16,7 @@ constexpr std::uint16_t kEnabledBits = 0x000F;
 void add_requirements(const AxisCore& core, Command command, Plan& plan) {
   const model::Steps* const steps = steps_of(core, command);
   if (steps == nullptr) return;
-  const auto end = std::find_if(steps->begin(), steps->end(),
-                                [](const model::Step& s) { return s.verb != model::Step::Verb::require; });
+  const auto end = std::ranges::find_if(*steps, [](auto& s) { return s.verb != model::Step::Verb::require; });
   add_steps(core, model::Steps(steps->begin(), end), plan);
 }
 
@@ -30,13 +29,10 @@ std::optional<std::int64_t> homing_method(const AxisCore& core) {
 
 // The drive runs on and on towards a switch that no input listens to.
 bool switch_is_there(const AxisCore& core, std::int64_t method) {
-  for (const model::HomingNeed& need : core.model.homing_needs) {
-    if (need.method != method) continue;
-    if (std::none_of(need.any_of.begin(), need.any_of.end(),
-                     [&](model::ObjectId id) { return core.store[id].known && core.store[id].number == need.equals; }))
-      return false;
-  }
-  return true;
+  return std::ranges::all_of(core.model.homing_needs, [&](const model::HomingNeed& need) {
+    const auto has = [&](model::ObjectId id) { return core.store[id].known && core.store[id].number == need.equals; };
+    return need.method != method || std::ranges::any_of(need.any_of, has);
+  });
 }
 
 std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
@@ -67,6 +63,12 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
   return quiet ? std::nullopt : std::optional(kModePosition);
 }
 
+// Nothing has ended motions for good since its target was asked for; one that waits for its turn counts.
+Errc judge_run(const AxisCore& core, Quantity target) {
+  if (core.model.binding(target) == nullptr) return Errc::not_supported;
+  return core.running_target(target) || core.asked.accepted(target) ? Errc::ok : Errc::state_unsuitable;
+}
+
 // What can be told before anything is sent.
 Errc admissible(const AxisCore& core, Command command) {
   const AxisFacts facts = core.facts();
@@ -79,9 +81,9 @@ Errc admissible(const AxisCore& core, Command command) {
     case Command::move_relative:
       return at_rest ? judge_move(core, true) : Errc::busy;
     case Command::run_velocity:
-      return core.model.binding(Quantity::target_velocity) != nullptr ? Errc::ok : Errc::not_supported;
+      return judge_run(core, Quantity::target_velocity);
     case Command::run_torque: {
-      if (core.model.binding(Quantity::target_torque) == nullptr) return Errc::not_supported;
+      if (const Errc code = judge_run(core, Quantity::target_torque); code != Errc::ok) return code;
       const model::Binding* limit = core.model.binding(Quantity::max_velocity);
       const bool there = limit != nullptr && limit->object != model::kNoObject && !core.store[limit->object].refused;
       return there ? Errc::ok : Errc::bad_value;
@@ -114,11 +116,8 @@ void add_look_at_ramp(const AxisCore& core, Plan& plan) {
   left.test = model::Condition::Test::not_equals;
   left.values = {0x07};
   plan.add(Action::wait(left, kBetweenLooks, true));
-  const model::Binding* velocity = core.model.binding(Quantity::velocity_actual);
-  if (core.model.moving)
-    plan.add(Action::read(core.model.moving->object));
-  else if (velocity != nullptr && velocity->object != model::kNoObject)
-    plan.add(Action::read(velocity->object));
+  const model::ObjectId speed = core.motion_object();
+  if (speed != model::kNoObject) plan.add(Action::read(speed));
   plan.add(Action::at(Mark::look_again));
 }
 
@@ -216,17 +215,17 @@ Plan plan_run(const AxisCore& core, Command command) {
   const bool velocity = command == Command::run_velocity;
   const Quantity quantity = velocity ? Quantity::target_velocity : Quantity::target_torque;
   const model::Binding* binding = core.model.binding(quantity);
-  if (binding == nullptr) return Plan::refuse(Errc::not_supported);
+  const auto wanted = core.running_target(quantity);
+  if (!wanted) return Plan::refuse(binding == nullptr ? Errc::not_supported : Errc::state_unsuitable);
   Plan steps;
   if (!add_command_steps(core, command, steps)) return steps;
   Plan plan;
   add_speeds(core, velocity ? 3 : 4, plan);
   const bool by_steps = writes(steps, binding->object);
   // Where the drive must be told to run, it must know how fast before.
-  if (core.is_virtual() && !by_steps && !add_write(core, quantity, core.running_target(quantity), plan))
-    return Plan::refuse(Errc::bad_value);
+  if (core.is_virtual() && !by_steps && !add_write(core, quantity, *wanted, plan)) return Plan::refuse(Errc::bad_value);
   append(plan, std::move(steps));
-  if (!core.is_virtual() && !by_steps && !add_write(core, quantity, core.running_target(quantity), plan))
+  if (!core.is_virtual() && !by_steps && !add_write(core, quantity, *wanted, plan))
     return Plan::refuse(Errc::bad_value);
   plan.add(Action::at(velocity ? Mark::start_velocity : Mark::start_torque));
   return plan;

@@ -153,7 +153,7 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
   for (const Quantity q : {Quantity::target_velocity, Quantity::target_torque}) {
     const model::Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
-    Wanted wanted = keep_wanted ? core.running_target(q) : Wanted{};
+    Wanted wanted = keep_wanted ? core.running_target(q).value_or(Wanted{}) : Wanted{};
     if (core.motion.record().set_aside_since(wanted.at) && core.facts().enabled()) wanted = {};
     add_running_target(core, binding->object, raw_of(core, *binding, wanted).value_or(0), plan, look_again);
   }

@@ -42,7 +42,7 @@ Plan plan_follow(const AxisCore& core) {
   plan.add(Action::run_raw(true));
   const auto quantity = setpoint_of_mode(core.mode_in_force());
   if (!quantity) return plan;
-  const Wanted wanted = core.running_target(*quantity);
+  const Wanted wanted = core.running_target(*quantity).value_or(Wanted{});
   if (wanted.value == 0 && wanted.exact.value_or(0) == 0) return plan;
   if (quantity == Quantity::target_velocity) {
     static_cast<void>(append(plan, plan_command(core, Command::run_velocity, core.mode_in_force())));

@@ -243,10 +243,10 @@ std::optional<std::int64_t> AxisCore::setpoint_position() const {
   return sampled ? value(Quantity::position_actual) : std::nullopt;
 }
 
-Wanted AxisCore::running_target(Quantity quantity) const {
+std::optional<Wanted> AxisCore::running_target(Quantity quantity) const {
   const auto speed = quantity == Quantity::target_velocity ? jog.speed() : std::nullopt;
-  if (speed) return motion.record().void_since(speed->at) ? Wanted{} : *speed;
-  return asked.taken(quantity).value_or(Wanted{});
+  if (speed && motion.record().void_since(speed->at)) return std::nullopt;
+  return speed ? speed : asked.taken(quantity);
 }
 
 std::optional<std::int64_t> AxisCore::homing_method() const {

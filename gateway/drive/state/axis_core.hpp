@@ -95,9 +95,9 @@ struct AxisCore {
   [[nodiscard]] bool shows_torque() const;
   /// The bus cannot take this virtual axis's torque away, and it is not enabled.
   [[nodiscard]] bool cannot_deenergise() const;
-  /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss, else 0. The velocity
-  /// of a jog is the jog's.
-  [[nodiscard]] Wanted running_target(Quantity quantity) const;
+  /// Velocity and torque: what a client has asked for since the last stop, fault, disable or loss. The velocity of a
+  /// jog is the jog's. None: a start is refused, and whatever else enables goes by 0.
+  [[nodiscard]] std::optional<Wanted> running_target(Quantity quantity) const;
   /// What a client has asked for since bring-up, else the configured one.
   [[nodiscard]] std::optional<std::int64_t> homing_method() const;
 

@@ -157,7 +157,7 @@ class AskedOfADrive : public testing::Test {
     remember_setpoints(core, batch);
     core.started(MotionKind::velocity, false, {});
   }
-  [[nodiscard]] std::int64_t runs_at() const { return core.running_target(target_velocity).value; }
+  [[nodiscard]] std::int64_t runs_at() const { return core.running_target(target_velocity).value_or(Wanted{}).value; }
   [[nodiscard]] bool writes_speed(std::int64_t raw) const {
     Plan plan;
     add_speeds(core, 1, plan);
@@ -210,9 +210,9 @@ TEST_F(AskedOfADrive, AJogStartsNothingOfTheOwnerBefore) {
   core.motion.owner_changed();
   jog(50);
   core.jog.end();
-  EXPECT_TRUE(record.set_aside_since(core.running_target(target_velocity).at));
+  EXPECT_TRUE(record.set_aside_since(core.running_target(target_velocity)->at));
   core.started(MotionKind::velocity, false, {});
-  EXPECT_FALSE(record.set_aside_since(core.running_target(target_velocity).at)) << "but a command does";
+  EXPECT_FALSE(record.set_aside_since(core.running_target(target_velocity)->at)) << "but a command does";
 }
 
 TEST_F(AskedOfADrive, AHomingGoesByTheMethodAskedForSinceTheDriveCameUpElseByTheConfiguredOne) {
