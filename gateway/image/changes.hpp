@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which axes have changed since a server looked last: so that it need not look at all of them all the time.
-// Promises that no change is missed: whoever is woken finds every axis that was marked since it took the marks.
-// Never says what has changed, and never calls anybody but to wake it.
+// Promises each reader that no change is missed: whoever is woken finds every axis that was marked since it took the
+// marks. Never says what has changed, and never calls anybody but to wake it.
 #pragma once
 
 #include <bitset>
 #include <functional>
+#include <utility>
+#include <vector>
 
 namespace axisgate {
 
@@ -14,26 +16,45 @@ class ChangeBoard {
  public:
   static constexpr std::size_t kPlaces = 500;
 
-  /// Called at the first mark after a take(), inside whatever changes the image: it may arm a timer, and no more.
-  std::function<void()> wake = [] {};
+  /// One server's marks, as long as it lives; the board outlives it.
+  class Reader {
+   public:
+    /// `wake`: called at the first mark after a take(), inside whatever changes the image: it may arm a timer, and no
+    /// more.
+    Reader(ChangeBoard& board, std::function<void()> wake) : board_(board), wake_(std::move(wake)) {
+      board_.readers_.push_back(this);
+    }
+    ~Reader() { std::erase(board_.readers_, this); }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+
+    /// Calls `each` with every marked axis in the order of their numbers, and forgets the marks.
+    template <typename Each>
+    void take(Each&& each) {
+      if (marks_.none()) return;
+      const auto marked = std::exchange(marks_, {});
+      for (std::size_t i = 0; i < kPlaces; ++i)
+        if (marked.test(i)) each(i);
+    }
+
+   private:
+    friend class ChangeBoard;
+    void mark(std::size_t axis) {
+      const bool first = marks_.none();
+      marks_.set(axis);
+      if (first) wake_();
+    }
+    ChangeBoard& board_;
+    std::function<void()> wake_;
+    std::bitset<kPlaces> marks_;
+  };
 
   void mark(std::size_t axis) {
-    const bool first = marks_.none();
-    marks_.set(axis);
-    if (first) wake();
-  }
-  /// Calls `each` with every marked axis in the order of their numbers, and forgets the marks.
-  template <typename Each>
-  void take(Each&& each) {
-    if (marks_.none()) return;
-    const auto marked = marks_;
-    marks_.reset();
-    for (std::size_t i = 0; i < kPlaces; ++i)
-      if (marked.test(i)) each(i);
+    for (Reader* reader : readers_) reader->mark(axis);
   }
 
  private:
-  std::bitset<kPlaces> marks_;
+  std::vector<Reader*> readers_;
 };
 
 }  // namespace axisgate

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "gateway/upstream/dds_process/system/start_error.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -48,7 +48,7 @@ TEST_F(Certificate, ThatCannotBeReadIsToldByItsFile) {
     try {
       static_cast<void>(guid_of_certificate(path_));
       ADD_FAILURE() << "it was read";
-    } catch (const StartError& error) {
+    } catch (const program::StartError& error) {
       EXPECT_THAT(error.what(), HasSubstr("--certificate " + path_ + ": no certificate"));
     }
   }
@@ -70,7 +70,7 @@ class Governance : public WithAFile {
     try {
       require_authentication(qos_);
       return "";
-    } catch (const StartError& error) {
+    } catch (const program::StartError& error) {
       return error.what();
     }
   }

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <ostream>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
 #include "tests/dds_process/child.hpp"
 #include "tests/dds_process/peer.hpp"
 
@@ -26,7 +26,7 @@ std::string last_line(Child& child) {
 TEST(Process, EndsWithZeroWhenTheGatewayIsGone) {
   Child child({"--commands", "--ros2"});
   child.close_link();
-  EXPECT_EQ(child.exit_code(), kExitGatewayGone);
+  EXPECT_EQ(child.exit_code(), link::kExitGatewayGone);
 }
 
 TEST(Process, SaysOnceThatItIsReady) {
@@ -50,7 +50,7 @@ TEST(Process, EndsAtAPacketThatIsNoRecord) {
   Child child;
   child.send_bytes({kLinkVersion, 0, 7});
   EXPECT_THAT(last_line(child), HasSubstr("another length"));
-  EXPECT_EQ(child.exit_code(), kExitProtocol);
+  EXPECT_EQ(child.exit_code(), link::kExitProtocol);
 }
 
 TEST(Process, EndsAtARecordOfAnotherVersion) {
@@ -59,14 +59,14 @@ TEST(Process, EndsAtARecordOfAnotherVersion) {
   packet[0] = kLinkVersion + 1;
   child.send_bytes(packet);
   EXPECT_THAT(last_line(child), HasSubstr("not of one installation"));
-  EXPECT_EQ(child.exit_code(), kExitProtocol);
+  EXPECT_EQ(child.exit_code(), link::kExitProtocol);
 }
 
 TEST(Process, EndsAtARecordThatOnlyItselfSends) {
   Child child;
   child.send(BeatRecord{});
   EXPECT_THAT(last_line(child), HasSubstr("never sends"));
-  EXPECT_EQ(child.exit_code(), kExitProtocol);
+  EXPECT_EQ(child.exit_code(), link::kExitProtocol);
 }
 
 TEST(Process, NamesTheInterfaceThatIsNotThereAndThoseThatAre) {
@@ -74,7 +74,7 @@ TEST(Process, NamesTheInterfaceThatIsNotThereAndThoseThatAre) {
   const std::string line = last_line(child);
   EXPECT_THAT(line, HasSubstr("--interface nosuch0"));
   EXPECT_THAT(line, HasSubstr("lo (127.0.0.1)"));
-  EXPECT_EQ(child.exit_code(), kExitNoAddress);
+  EXPECT_EQ(child.exit_code(), link::kExitNoAddress);
 }
 
 TEST(Process, EndsAtItsMemoryLimit) {
@@ -93,7 +93,7 @@ TEST(Process, EndsAtItsMemoryLimit) {
     writer->write(sample);
   }
   ASSERT_TRUE(child.hung_up());
-  EXPECT_EQ(child.exit_code(), kExitMemory);
+  EXPECT_EQ(child.exit_code(), link::kExitMemory);
   EXPECT_THAT(child.error_output(), HasSubstr("--memory-limit-mib"));
 }
 
@@ -119,7 +119,7 @@ TEST(Process, SaysWhatIsWrongWithAQosFile) {
   std::ofstream(path) << "<profiles><data_writer";
   Child child({"--qos-file", path}, false);
   EXPECT_THAT(last_line(child), HasSubstr("--qos-file " + path));
-  EXPECT_EQ(child.exit_code(), kExitParticipant);
+  EXPECT_EQ(child.exit_code(), link::kExitCannotServe);
   std::remove(path.c_str());
 }
 
@@ -134,7 +134,7 @@ class CommandLine : public testing::TestWithParam<BadLine> {};
 
 TEST_P(CommandLine, ThatIsWrongIsToldByItsOption) {
   const auto [code, text] = Child::run(GetParam().arguments);
-  EXPECT_EQ(code, kExitUsage);
+  EXPECT_EQ(code, link::kExitUsage);
   EXPECT_THAT(text, HasSubstr(GetParam().says));
 }
 

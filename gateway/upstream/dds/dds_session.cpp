@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "gateway/upstream/dds/dds_requests.hpp"
-#include "gateway/upstream/dds/event_feed.hpp"
 #include "gateway/upstream/dds/gateway_record.hpp"
 #include "gateway/upstream/dds/ros_requests.hpp"
-#include "gateway/upstream/dds/state_feed.hpp"
 #include "gateway/upstream/dds/state_record.hpp"
 #include "gateway/upstream/dds/stop_order.hpp"
+#include "gateway/upstream/feed/axis_feed.hpp"
+#include "gateway/upstream/feed/event_feed.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -19,6 +19,12 @@ UnitsOfAxes units_of(const std::vector<AxisUnits>& axes) {
   UnitsOfAxes units;
   for (const AxisUnits& each : axes) units.emplace(each.axis, DdsUnits(each));
   return units;
+}
+
+EventRecord event_record(const Event& event) {
+  return {event.axis,   event.at == kLongAgo ? 0 : event.at.time_since_epoch().count(),
+          event.number, static_cast<std::uint8_t>(event.kind),
+          event.code,   event.text};
 }
 
 }  // namespace
@@ -39,9 +45,9 @@ struct DdsSession::Impl {
                  [this] { wake_up(); }),
         ros({settings, units, image, commands, signs, namesakes, stop_order, reports.line}, identities),
         events(ring),
-        states(settings.min_period, settings.max_period) {
+        states(settings.min_period, settings.max_period),
+        changes(image.changes, [this] { wake_up(); }) {
     add_axes(kLongAgo);
-    image.changes.wake = [this] { wake_up(); };
   }
 
   void add_axes(Instant now) {
@@ -62,7 +68,7 @@ struct DdsSession::Impl {
     if (link_up) wake();
   }
   void take_changes(Instant now) {
-    image.changes.take([&](std::size_t axis) { states.changed(static_cast<AxisNumber>(axis), now); });
+    changes.take([&](std::size_t axis) { states.changed(static_cast<AxisNumber>(axis), now); });
   }
   void look_at_name() {
     if (namesakes.taken() == name_taken) return;
@@ -88,8 +94,9 @@ struct DdsSession::Impl {
   ReplyQueue replies{kMaxRepliesWaiting};
   DdsRequests requests;
   RosRequests ros;
-  EventFeed events;
-  StateFeed states;
+  feed::EventFeed events;
+  feed::AxisFeed states;
+  ChangeBoard::Reader changes;
   Instant gateway_due = kLongAgo;
   bool link_up = false;
 };
@@ -99,9 +106,7 @@ DdsSession::DdsSession(DdsSettings settings, ProcessImage& image, const EventRin
     : impl_(std::make_unique<Impl>(std::move(settings), image, events, commands, std::move(wake), std::move(reports))) {
 }
 
-DdsSession::~DdsSession() {
-  impl_->image.changes.wake = [] {};
-}
+DdsSession::~DdsSession() = default;
 
 void DdsSession::take_axes(const std::vector<AxisUnits>& units, Instant now) {
   impl_->units = units_of(units);
@@ -159,7 +164,7 @@ std::optional<Record> DdsSession::next(Instant now) {
   it.namesakes.on_time(now);
   it.look_at_name();
   if (auto reply = it.replies.next()) return reply;
-  if (auto event = it.events.next()) return Record(std::move(*event));
+  if (const Event* const event = it.events.next()) return event_record(*event);
   it.take_changes(now);
   // Where the reader is so slow that some axis is always due, this one would never come.
   if (it.gateway_due + kGatewayPeriod <= now) return it.gateway_sample(now);

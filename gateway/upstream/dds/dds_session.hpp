@@ -26,10 +26,8 @@ inline constexpr std::size_t kMaxWriters = kMaxBeats;
 inline constexpr Duration kGrace = std::chrono::seconds(3);
 /// How long a request id is remembered; how many are: RequestBounds. Beyond, new requests are refused (queue_full).
 inline constexpr Duration kRequestsKept = std::chrono::seconds(10);
-/// Replies and events that wait for the socket.
+/// Replies that wait for the socket.
 inline constexpr std::size_t kMaxRepliesWaiting = 256;
-/// All that the ring has: at a start with many axes more happens than a process that starts beside them can take.
-inline constexpr std::size_t kMaxEventsWaiting = kMaxEvents;
 
 /// What is reported to the gateway of the domain.
 struct DdsDomainReports {
@@ -43,7 +41,7 @@ struct DdsDomainReports {
 
 class DdsSession : boost::noncopyable {
  public:
-  /// Takes image.changes for itself (its wake() calls `wake`, which arms a timer and no more). Settings stay as they
+  /// A mark of image.changes calls `wake`, which arms a timer and no more. Settings stay as they
   /// are; axes and units until take_axes().
   DdsSession(DdsSettings settings, ProcessImage& image, const EventRing& events, CommandPort& commands,
              std::function<void()> wake, DdsDomainReports reports = {});

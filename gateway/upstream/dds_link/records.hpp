@@ -22,6 +22,8 @@ namespace axisgate::dds {
 /// First byte of each packet. Both ends are installed together: another version is another installation.
 inline constexpr std::uint8_t kLinkVersion = 5;
 using link::kMaxPacket;
+using link::kMillisecond;
+using link::kSecond;
 using link::SteadyNs;
 inline constexpr std::size_t kMaxName = 64;
 inline constexpr std::size_t kMaxText = 256;

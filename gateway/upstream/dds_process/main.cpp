@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <exception>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_process/options.hpp"
 #include "gateway/upstream/dds_process/serve_command.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
 #include "gateway/upstream/dds_process/topics_command.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
 namespace {
 
@@ -24,11 +24,11 @@ struct Runner {
 int main(int argc, char** argv) {
   try {
     return std::visit(Runner{}, axisgate::dds::parse_command_line(argc, argv));
-  } catch (const axisgate::dds::StartError& error) {
+  } catch (const axisgate::program::StartError& error) {
     std::fprintf(stderr, "axisgate-dds: %s\n", error.what());
     return error.exit_code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "axisgate-dds: %s\n", error.what());
-    return axisgate::dds::kExitInternal;
+    return axisgate::link::kExitInternal;
   }
 }

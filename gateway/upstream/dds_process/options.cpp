@@ -5,9 +5,9 @@
 #include <iostream>
 
 #include "gateway/manual/generate.hpp"
-#include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_link/gateway_name.hpp"
 #include "gateway/upstream/dds_link/records.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -105,7 +105,7 @@ std::variant<int, ServeOptions, TopicsOptions> parse_command_line(int argc, char
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : kExitUsage;
+    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : link::kExitUsage;
   }
   if (serve_command->parsed()) return serve;
   return topics;

@@ -13,7 +13,6 @@
 #include <variant>
 
 #include "gateway/core/log.hpp"
-#include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_process/commands/command_readers.hpp"
 #include "gateway/upstream/dds_process/commands/liveliness_readers.hpp"
 #include "gateway/upstream/dds_process/discovery/namesake_reader.hpp"
@@ -23,14 +22,18 @@
 #include "gateway/upstream/dds_process/ros/ros_topics.hpp"
 #include "gateway/upstream/dds_process/system/dds_log.hpp"
 #include "gateway/upstream/dds_process/system/dead_segments.hpp"
-#include "gateway/upstream/dds_process/system/link_socket.hpp"
-#include "gateway/upstream/dds_process/system/memory_limit.hpp"
 #include "gateway/upstream/dds_process/system/standstill.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/memory_limit.hpp"
+#include "gateway/upstream/program/record_link.hpp"
+#include "gateway/upstream/program/start_error.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
+
+using Link = program::RecordLink<Record, decode>;
+using program::Received;
 
 constexpr SteadyNs kBeatPeriod = 100 * kMillisecond;
 constexpr SteadyNs kMemoryPeriod = 250 * kMillisecond;
@@ -39,16 +42,16 @@ constexpr int kRecordsPerTurn = 256;
 /// What one turn may send, the socket being idle: nothing of it may be lost for want of room.
 constexpr std::size_t kMostSentPerTurn =
     2 * kMaxWritersKnown + kMostBeatRecords + kSamplesPerTurn + kRosSamplesPerTurn + kNamesakesPerTurn + 1;
-static_assert(kMostSentPerTurn <= kMaxPacketsWaiting);
+static_assert(kMostSentPerTurn <= program::kMaxPacketsWaiting);
 
-void tell(LinkSocket& link, LogLevel level, const std::string& text) {
+void tell(Link& link, LogLevel level, const std::string& text) {
   link.send(LogRecord{static_cast<std::uint8_t>(level), text});
 }
 
 /// From a participant that is there to the end of the socket.
 class Server {
  public:
-  Server(const ServeOptions& options, LinkSocket& link, DdsLog& log, Wake& wake)
+  Server(const ServeOptions& options, Link& link, DdsLog& log, program::Wake& wake)
       : link_(link),
         log_(log),
         wake_(wake),
@@ -71,22 +74,22 @@ class Server {
   int run() {
     link_.send(ReadyRecord{AXISGATE_VERSION});
     for (const IdentityRecord& record : identities_) link_.send(record);
-    SteadyNs next_beat = steady_now();
-    SteadyNs next_memory_check = steady_now();
+    SteadyNs next_beat = program::steady_now();
+    SteadyNs next_memory_check = program::steady_now();
     for (;;) {
       wait(next_beat);
-      standstill_.turn(steady_now());
-      publishers_.publish_held(steady_now());
-      if (steady_now() >= next_memory_check) {
-        check_memory();
-        next_memory_check = steady_now() + kMemoryPeriod;
+      standstill_.turn(program::steady_now());
+      publishers_.publish_held(program::steady_now());
+      if (program::steady_now() >= next_memory_check) {
+        program::check_memory();
+        next_memory_check = program::steady_now() + kMemoryPeriod;
       }
       if (const std::optional<int> end = take_records()) return *end;
       wake_.clear();
-      if (!link_.flush()) return kExitGatewayGone;
+      if (!link_.flush()) return link::kExitGatewayGone;
       more_ = false;
       namesake_reader_.update();
-      const SteadyNs now = steady_now();
+      const SteadyNs now = program::steady_now();
       // All that one turn takes goes out together: else what comes last would never find the socket idle.
       if (link_.idle()) {
         if (readers_ && now >= next_beat) {
@@ -111,7 +114,7 @@ class Server {
                     {wake_.fd(), POLLIN, 0}};
     // Samples and changes wait while the gateway does not read: only its socket can change that.
     const nfds_t count = link_.idle() ? 2 : 1;
-    const SteadyNs now = steady_now();
+    const SteadyNs now = program::steady_now();
     SteadyNs until = std::min(now + kMemoryPeriod, publishers_.due());
     if (readers_ && link_.idle()) until = std::min(until, next_beat);
     if (ros_) until = std::min(until, ros_->due());
@@ -122,15 +125,16 @@ class Server {
   /// An exit code where this was the last.
   std::optional<int> take_records() {
     // Measured anew it differs by nanoseconds: the stamp of one and the same value would go to and fro.
-    if (const ClockDifference measured = time_of_day_difference(); std::abs(measured - difference_) > kMillisecond) {
+    if (const ClockDifference measured = program::time_of_day_difference();
+        std::abs(measured - difference_) > kMillisecond) {
       difference_ = measured;
     }
     for (int taken = 0; taken < kRecordsPerTurn; ++taken) {
-      const LinkSocket::Packet packet = link_.receive();
-      if (packet.what == LinkSocket::Received::nothing) break;
-      if (packet.what == LinkSocket::Received::closed) return kExitGatewayGone;
-      if (packet.what == LinkSocket::Received::garbage) return protocol_error(packet.problem);
-      if (!publishers_.publish(packet.record, steady_now(), difference_)) {
+      const Link::Got packet = link_.receive();
+      if (packet.what == Received::nothing) break;
+      if (packet.what == Received::closed) return link::kExitGatewayGone;
+      if (packet.what == Received::garbage) return protocol_error(packet.problem);
+      if (!publishers_.publish(packet.record, program::steady_now(), difference_)) {
         return protocol_error("a record that the gateway never sends");
       }
       if (ros_) ros_->on_record(packet.record);
@@ -140,7 +144,7 @@ class Server {
 
   int protocol_error(const std::string& problem) {
     tell(link_, LogLevel::error, "from the gateway: " + problem);
-    return kExitProtocol;
+    return link::kExitProtocol;
   }
 
   void take_namesakes() {
@@ -158,7 +162,7 @@ class Server {
     if (readers_) {
       // First the samples, then what is known of writers: so no sample is older than what is told before it.
       more_ = !readers_->take(samples) || more_;
-      const WriterWatch::Changes changes = watch_.take_changes(steady_now());
+      const WriterWatch::Changes changes = watch_.take_changes(program::steady_now());
       for (const WriterRecord& record : changes.before) link_.send(record);
       send_dated(samples);
       for (const WriterRecord& record : changes.after) link_.send(record);
@@ -186,9 +190,9 @@ class Server {
     send_all(records);
   }
 
-  LinkSocket& link_;
+  Link& link_;
   DdsLog& log_;
-  Wake& wake_;
+  program::Wake& wake_;
   WriterWatch watch_;
   NamesakeWatch namesakes_;
   WriterDiscovery discovery_;
@@ -199,7 +203,7 @@ class Server {
   std::optional<CommandReaders> readers_;
   std::optional<LivelinessReaders> liveliness_;
   std::vector<IdentityRecord> identities_;
-  ClockDifference difference_ = time_of_day_difference();
+  ClockDifference difference_ = program::time_of_day_difference();
   Standstill standstill_;
   bool more_ = false;
 };
@@ -208,23 +212,23 @@ class Server {
 /// that is being deleted, and no gateway would be there any more to end that.
 void leave_soon() {
   constexpr unsigned kSecondsToLeave = 1;
-  std::signal(SIGALRM, [](int) { ::_exit(kExitGatewayGone); });
+  std::signal(SIGALRM, [](int) { ::_exit(link::kExitGatewayGone); });
   ::alarm(kSecondsToLeave);
 }
 
-int serve(const ServeOptions& options, LinkSocket& link) {
-  Wake wake;
+int serve(const ServeOptions& options, Link& link) {
+  program::Wake wake;
   DdsLog log(wake);
   take_over_library_log(log);
-  int code = kExitInternal;
+  int code = link::kExitInternal;
   if (options.participant.shared_memory) remove_dead_segments("/dev/shm");
   try {
     Server server(options, link, log, wake);
     code = server.run();
     leave_soon();
-  } catch (const StartError& error) {
+  } catch (const program::StartError& error) {
     release_library_log();
-    while (const std::optional<LogRecord> line = log.next(steady_now())) link.send(*line);
+    while (const std::optional<LogRecord> line = log.next(program::steady_now())) link.send(*line);
     tell(link, LogLevel::error, error.what());
     code = error.exit_code;
   }
@@ -237,15 +241,15 @@ int serve(const ServeOptions& options, LinkSocket& link) {
 int run(const ServeOptions& options) {
   // Ctrl-C on the terminal means the gateway, which ends us by closing the socket.
   std::signal(SIGINT, SIG_IGN);
-  limit_memory(options.memory_limit_mib);
-  LinkSocket link(options.link_fd);
+  program::limit_memory(options.memory_limit_mib);
+  Link link(options.link_fd, "axisgate-dds", "; to look at topics, run: axisgate-dds topics");
   try {
     return serve(options, link);
   } catch (const std::system_error& error) {
     // How the library's attempt to start a thread ends where there is no room for its stack.
-    if (error.code() == std::errc::resource_unavailable_try_again) end_for_memory();
+    if (error.code() == std::errc::resource_unavailable_try_again) program::end_for_memory();
     tell(link, LogLevel::error, error.what());
-    return kExitInternal;
+    return link::kExitInternal;
   }
 }
 

@@ -15,10 +15,10 @@
 #include <string_view>
 
 #include "gateway/upstream/dds_process/participant/participant.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
 #include "gateway/upstream/dds_process/topics/guarded_type.hpp"
 #include "gateway/upstream/dds_process/topics_table.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -104,11 +104,11 @@ class Topics {
     const bool redraws = isatty(STDOUT_FILENO) == 1 && !options_.json && !options_.once;
     std::optional<Terminal> terminal;
     if (redraws) terminal.emplace();
-    const SteadyNs begun = steady_now();
+    const SteadyNs begun = program::steady_now();
     SteadyNs newest = begun;
     while (ended == 0) {
       reader_.wait_for_unread_message(Duration_t(0, static_cast<std::uint32_t>(kRedrawPeriod)));
-      const SteadyNs now = steady_now();
+      const SteadyNs now = program::steady_now();
       take_gateways();
       if (take(!redraws)) newest = now;
       if (terminal) {
@@ -140,7 +140,7 @@ class Topics {
   }
 
   [[nodiscard]] std::string tables() const {
-    const std::int64_t now = clock_ns(CLOCK_REALTIME);
+    const std::int64_t now = program::clock_ns(CLOCK_REALTIME);
     const std::string gateways = options_.all ? gateways_table(gateways_, now) + "\n" : std::string();
     return gateways + topics_table(axes_, now);
   }
@@ -157,7 +157,7 @@ class Topics {
       SeenGateway& seen = gateways_[sample.gateway().to_string()];
       seen.state = sample;
       const auto& prefix = info.sample_identity.writer_guid().guidPrefix;
-      seen.writers[std::string(std::begin(prefix.value), std::end(prefix.value))] = clock_ns(CLOCK_REALTIME);
+      seen.writers[std::string(std::begin(prefix.value), std::end(prefix.value))] = program::clock_ns(CLOCK_REALTIME);
     }
   }
 

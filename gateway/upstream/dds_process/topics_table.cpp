@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/topics_table.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 #include <fmt/format.h>
 

@@ -25,6 +25,8 @@ inline constexpr std::size_t kMaxPacket = 64 * 1024;
 
 /// On the steady clock, in nanoseconds: it is the same one in both processes. 0: unknown.
 using SteadyNs = std::int64_t;
+inline constexpr SteadyNs kMillisecond = 1'000'000;
+inline constexpr SteadyNs kSecond = 1000 * kMillisecond;
 
 class Encoder {
  public:
@@ -51,7 +53,9 @@ class Encoder {
   requires std::is_integral_v<T>
   void put(T value) {
     auto bits = static_cast<std::uint64_t>(value);
-    for (std::size_t i = 0; i < sizeof(T); ++i, bits >>= 8) to_.push_back(static_cast<Byte>(bits & 0xFF));
+    std::array<Byte, sizeof(T)> bytes{};
+    for (std::size_t i = 0; i < sizeof(T); ++i, bits >>= 8) bytes[i] = static_cast<Byte>(bits & 0xFF);
+    put(bytes);
   }
   template <typename T>
   requires std::is_enum_v<T>
@@ -134,6 +138,8 @@ class Decoder {
 enum class DecodeError : std::uint8_t { none, too_short, version, kind, length };
 /// @param program its name: "axisgate-dds"
 [[nodiscard]] std::string text(DecodeError error, std::string_view program);
+/// Why one of the two does not understand the other.
+[[nodiscard]] std::string not_of_one_installation(std::string_view program);
 
 /// @param members called as members(coder, record): each member once, in the order they have on the wire
 template <typename Record, typename Members>

@@ -44,11 +44,12 @@ struct ChangingImage::Impl {
       axis.supported = bit(Quantity::position_actual);
     }
     server = std::make_unique<dds::DdsServer>(io, runtime, settings_of(shape), image, events, commands, log,
-                                              dds::DdsReports{[](EventKind, const std::string&) {},
-                                                              [this](bool down) {
-                                                                if (!down && !told) ready.set_value();
-                                                                told = told || !down;
-                                                              }});
+                                              dds::DdsReports{{[](EventKind, const std::string&) {},
+                                                               [this](bool down) {
+                                                                 if (!down && !told) ready.set_value();
+                                                                 told = told || !down;
+                                                               }},
+                                                              {}});
     timer = runtime.make_timer([this] { turn(); });
     server->start();
     thread = std::thread([this] { io.run(); });
@@ -107,6 +108,6 @@ void ChangingImage::change(bool on) {
 }
 
 std::uint64_t ChangingImage::changes() const { return impl_->changed; }
-pid_t ChangingImage::process() const { return impl_->server->pid().value_or(0); }
+pid_t ChangingImage::process() const { return impl_->server->keeper().pid().value_or(0); }
 
 }  // namespace axisgate::bench

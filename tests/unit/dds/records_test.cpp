@@ -110,7 +110,7 @@ TEST(Records, AnotherVersionAnUnknownKindAndNothingAreRefusedByName) {
   EXPECT_EQ(decode(std::vector<Byte>{kLinkVersion, 0}).error, DecodeError::length);
   for (const auto error :
        {DecodeError::none, DecodeError::too_short, DecodeError::version, DecodeError::kind, DecodeError::length})
-    EXPECT_NE(text(error), "");
+    EXPECT_NE(text(error, "axisgate-dds"), "");
 }
 
 TEST(Records, ACountThatCannotBeTrueIsRefused) {

@@ -97,7 +97,7 @@ TEST(Reader, OfABurstOfEventsGetsTheNewestAndIsToldHowManyWereLost) {
   for (int i = 0; i < 1200; ++i) plain.ring.add(plain.now, 1, EventKind::warning, 0, "again");
   EXPECT_EQ(plain.woken, 1);
   const auto events = plain.read<EventRecord>();
-  ASSERT_THAT(events, SizeIs(kMaxEventsWaiting));
+  ASSERT_THAT(events, SizeIs(feed::kMaxEventsWaiting));
   EXPECT_EQ(events.front().number, 201U);
   EXPECT_EQ(events.back().number, 1200U);
   plain.now += 1s;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where axisgate-dds is looked for, and what it is told on its command line.
-#include "gateway/upstream/dds_host/program.hpp"
+#include "gateway/upstream/dds_host/dds_program.hpp"
 
 #include <gmock/gmock.h>
 
@@ -19,19 +19,20 @@ class WhereItIs : public ::testing::Test {
 
 TEST_F(WhereItIs, IsWhereTheEnvironmentSays) {
   setenv("AXISGATE_DDS_PROGRAM", "/bin/true", 1);
-  EXPECT_EQ(find_program().path, "/bin/true");
+  EXPECT_EQ(host::find_program(kProgram).path, "/bin/true");
 }
 
 TEST_F(WhereItIs, IsNoFolderAndNoFileThatCannotBeRun) {
   for (const char* const wrong : {"/bin", "/etc/passwd", "/nowhere"}) {
     setenv("AXISGATE_DDS_PROGRAM", wrong, 1);
-    EXPECT_EQ(find_program().path, "");
-    EXPECT_EQ(find_program().why_not, std::string("AXISGATE_DDS_PROGRAM names ") + wrong + ", which is no program");
+    EXPECT_EQ(host::find_program(kProgram).path, "");
+    EXPECT_EQ(host::find_program(kProgram).why_not,
+              std::string("AXISGATE_DDS_PROGRAM names ") + wrong + ", which is no program");
   }
 }
 
 TEST_F(WhereItIs, IsToldWithWhatToDoWhereItIsNotInstalled) {
-  const Program program = find_program();  // beside this test there is none
+  const host::FoundProgram program = host::find_program(kProgram);  // beside this test there is none
   EXPECT_EQ(program.path, "");
   EXPECT_THAT(program.why_not, HasSubstr("/axisgate-dds nor "));
   EXPECT_THAT(program.why_not, HasSubstr("/libexec/axisgate/axisgate-dds; it is built with"));

@@ -29,11 +29,11 @@ TEST_F(Hosted, RaisesTheAlarmUntilTopicsAreThere) {
 TEST_F(Hosted, StartsItAgainWhenItIsKilled) {
   start("normal");
   ASSERT_TRUE(run_until_ready());
-  const pid_t first = server->pid().value();
+  const pid_t first = server->keeper().pid().value();
   ASSERT_EQ(kill(first, SIGKILL), 0);
   ASSERT_TRUE(run_until([&] { return down; })) << "nobody noticed";
   ASSERT_TRUE(run_until_ready());
-  EXPECT_NE(server->pid().value(), first);
+  EXPECT_NE(server->keeper().pid().value(), first);
   ASSERT_THAT(told, SizeIs(3));
   EXPECT_EQ(told[1].kind, EventKind::warning);
   EXPECT_EQ(told[1].text,
@@ -102,8 +102,8 @@ TEST_F(Hosted, TellsWhatItSaidBeforeItEnded) {
 TEST_F(Hosted, TellsAnEndThatRepeatsItselfOnce) {
   start("ends with 71");
   for (int starts = 1; starts <= 6; ++starts) {
-    ASSERT_TRUE(run_until([&] { return server->pid().has_value(); })) << starts;
-    ASSERT_TRUE(run_until([&] { return !server->pid(); })) << starts;
+    ASSERT_TRUE(run_until([&] { return server->keeper().pid().has_value(); })) << starts;
+    ASSERT_TRUE(run_until([&] { return !server->keeper().pid(); })) << starts;
     runtime->skip(std::chrono::seconds(30));  // the longest pause
   }
   EXPECT_THAT(told, SizeIs(1));
@@ -138,15 +138,15 @@ TEST_F(Hosted, GivesItNothingButItsSocketAndTheStandardStreams) {
   ASSERT_TRUE(said);
   EXPECT_THAT(lines, IsSupersetOf({"open: 0 1 2 3", "input: /dev/null", "blocked: 0", "SIGPIPE: default",
                                    "group of its own: 1"}));
-  EXPECT_THAT(lines, Contains("nice: " + std::to_string(nice + kNicer)));
+  EXPECT_THAT(lines, Contains("nice: " + std::to_string(nice + kProgram.nicer)));
 }
 
 TEST_F(Hosted, EndsItOnStop) {
   start("normal");
   ASSERT_TRUE(run_until_ready());
-  const pid_t pid = server->pid().value();
+  const pid_t pid = server->keeper().pid().value();
   server->stop();
-  EXPECT_FALSE(server->pid());
+  EXPECT_FALSE(server->keeper().pid());
   EXPECT_EQ(kill(pid, 0), -1) << "it still runs";
   EXPECT_TRUE(no_child_is_left());
   EXPECT_THAT(told, SizeIs(1)) << "an end that was wanted is no event";
@@ -155,7 +155,7 @@ TEST_F(Hosted, EndsItOnStop) {
 TEST_F(Hosted, KillsItOnStopWhereItDoesNotEndByItself) {
   start("does not end");
   ASSERT_TRUE(run_until_ready());
-  const pid_t pid = server->pid().value();
+  const pid_t pid = server->keeper().pid().value();
   server->stop();
   EXPECT_EQ(kill(pid, 0), -1) << "it still runs";
   EXPECT_TRUE(no_child_is_left());

@@ -26,7 +26,7 @@ TEST_F(Hosted, GivesASlowReaderTheNewestState) {
     io.run_for(std::chrono::milliseconds(20));
   };
   for (std::uint32_t sequence = 1; sequence <= 5; ++sequence) change(sequence);
-  ASSERT_EQ(kill(server->pid().value(), SIGUSR1), 0);
+  ASSERT_EQ(kill(server->keeper().pid().value(), SIGUSR1), 0);
   ASSERT_TRUE(run_until_said("499 is at 5"));
   EXPECT_THAT(lines, Not(Contains("499 is at 3"))) << "states that were no longer true were kept for it";
 }
@@ -44,7 +44,7 @@ TEST_F(Hosted, TakesNoMoreThanItsShareOfTheLoop) {
   };
   look();
   ASSERT_TRUE(run_until_said("1000 replies, one each"));
-  EXPECT_THAT(most, Le(kMaxReadATurn)) << "somebody else's turn had to wait";
+  EXPECT_THAT(most, Le(host::kMaxReadATurn)) << "somebody else's turn had to wait";
 }
 
 TEST_F(Hosted, LetsItFillNeitherTheLogNorALine) {

@@ -16,8 +16,8 @@
 #include <optional>
 #include <string>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_link/records.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
 
 namespace {
 
@@ -47,7 +47,7 @@ std::optional<Record> receive() {
 int read_on() {
   while (receive()) {
   }
-  return kExitGatewayGone;
+  return axisgate::link::kExitGatewayGone;
 }
 
 /// As a crash is without a sanitizer that has its own words for it.
@@ -137,7 +137,7 @@ void send_garbage() {
 
 const std::map<std::string, std::function<int()>> kBehaviours{
     {"normal", [] { return ready(), read_on(); }},
-    {"says why and ends", [] { return say("no interface eth7"), kExitParticipant; }},
+    {"says why and ends", [] { return say("no interface eth7"), axisgate::link::kExitCannotServe; }},
     {"crashes at once", [] { return die_of(SIGSEGV), 0; }},
     {"crashes when ready", [] { return ready(), die_of(SIGSEGV), 0; }},
     {"is never ready", [] { return read_on(); }},

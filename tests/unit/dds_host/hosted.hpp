@@ -11,58 +11,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "adapters/asio/asio_runtime.hpp"
+#include "gateway/upstream/dds_host/dds_program.hpp"
 #include "gateway/upstream/dds_host/dds_server.hpp"
+#include "tests/unit/support/skipping_runtime.hpp"
 
 namespace axisgate::dds {
-
-/// The real clock and timers, and time that a test may leave out: where nothing can happen in it but what is waited
-/// for.
-class SkippingRuntime final : public Runtime {
- public:
-  explicit SkippingRuntime(boost::asio::io_context& io) : inner_(io) {}
-  [[nodiscard]] Instant now() const override { return inner_.now() + skipped_; }
-  [[nodiscard]] std::unique_ptr<Timer> make_timer(std::function<void()> on_expiry) override {
-    return std::make_unique<Skipping>(*this, std::move(on_expiry));
-  }
-  void skip(Duration time) {
-    skipped_ += time;
-    for (Skipping* timer : timers_) timer->arm();
-  }
-
- private:
-  class Skipping final : public Timer {
-   public:
-    Skipping(SkippingRuntime& runtime, std::function<void()> on_expiry)
-        : runtime_(runtime), inner_(runtime.inner_.make_timer([this, on_expiry = std::move(on_expiry)] {
-            deadline_ = kNever;
-            on_expiry();
-          })) {
-      runtime_.timers_.insert(this);
-    }
-    ~Skipping() override { runtime_.timers_.erase(this); }
-    void expires_at(Instant deadline) override {
-      deadline_ = deadline;
-      arm();
-    }
-    void arm() {
-      const bool moves = deadline_ != kNever && deadline_ != kLongAgo;
-      inner_->expires_at(moves ? deadline_ - runtime_.skipped_ : deadline_);
-    }
-
-   private:
-    SkippingRuntime& runtime_;
-    std::unique_ptr<Timer> inner_;
-    Instant deadline_ = kNever;
-  };
-  AsioRuntime inner_;
-  Duration skipped_{};
-  std::set<Skipping*> timers_;
-};
 
 /// Accepts everything at once.
 class Axes final : public CommandPort {
@@ -88,14 +44,14 @@ class Hosted : public ::testing::Test {
 
   void start(const std::string& behaviour) {
     behave(behaviour);
-    runtime = std::make_unique<SkippingRuntime>(io);
-    server = std::make_unique<DdsServer>(io, *runtime, settings, image, events, axes, log,
-                                         DdsReports{[this](EventKind kind, std::string text) {
-                                                      told.push_back({kind, std::move(text)});
-                                                    },
-                                                    [this](bool is) { down = is; },
-                                                    {},
-                                                    [this](bool is) { address_missing = is; }});
+    runtime = std::make_unique<test::SkippingRuntime>(io);
+    server = std::make_unique<DdsServer>(
+        io, *runtime, settings, image, events, axes, log,
+        DdsReports{{[this](EventKind kind, std::string text) {
+                      told.push_back({kind, std::move(text)});
+                    },
+                    [this](bool is) { down = is; }, [this](bool is) { address_missing = is; }},
+                   {}});
     server->start();
   }
   static void behave(const std::string& behaviour) { setenv("FAKE_DDS", behaviour.c_str(), 1); }
@@ -138,7 +94,7 @@ class Hosted : public ::testing::Test {
     std::string text;
   };
   boost::asio::io_context io{1};
-  std::unique_ptr<SkippingRuntime> runtime;
+  std::unique_ptr<test::SkippingRuntime> runtime;
   DdsSettings settings;
   ProcessImage image;
   EventRing events;

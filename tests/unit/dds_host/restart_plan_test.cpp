@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // When axisgate-dds is started again, and what is told of its ends.
-#include "gateway/upstream/dds_host/restart_plan.hpp"
+#include "gateway/upstream/host/restart_plan.hpp"
 
 #include <gmock/gmock.h>
 
 #include <csignal>
 
 #include "gateway/core/line_bucket.hpp"
-#include "gateway/upstream/dds_host/taking_watch.hpp"
-#include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "gateway/upstream/dds_host/dds_program.hpp"
+#include "gateway/upstream/host/taking_watch.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
 
 namespace axisgate::dds {
 namespace {
+
+using namespace host;
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -19,7 +22,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::Optional;
 
-const ProcessEnd kNoParticipant{ProcessEnd::How::exited, kExitParticipant};
+const ProcessEnd kNoParticipant{ProcessEnd::How::exited, link::kExitCannotServe};
 const ProcessEnd kCrash{ProcessEnd::How::killed, SIGSEGV};
 constexpr Instant kStart{seconds(1000)};
 
@@ -31,39 +34,39 @@ std::vector<std::int64_t> pauses_ms(RestartPlan& plan, int count, const ProcessE
 }
 
 TEST(RestartPlan, DoublesItsPausesUpToHalfAMinute) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   EXPECT_THAT(pauses_ms(plan, 10, kCrash), ElementsAre(200, 400, 800, 1600, 3200, 6400, 12800, 25600, 30000, 30000));
 }
 
 TEST(RestartPlan, BeginsAnewAfterAMinuteThatItRanWell) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   static_cast<void>(pauses_ms(plan, 9, kCrash));
   static_cast<void>(plan.on_ready("1", kStart));
   EXPECT_EQ(plan.on_end(kCrash, kStart + kRanWell).pause, kFirstPause);
 }
 
 TEST(RestartPlan, GoesOnDoublingWhereItCrashesSoonAfterItWasReady) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   static_cast<void>(pauses_ms(plan, 3, kCrash));
   static_cast<void>(plan.on_ready("1", kStart));
   EXPECT_EQ(plan.on_end(kCrash, kStart + kRanWell - Duration(1)).pause, milliseconds(1600));
 }
 
 TEST(RestartPlan, DoesNotCountTheTimeInWhichItWasNotReady) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   static_cast<void>(plan.on_ready("1", kStart));
   static_cast<void>(plan.on_end(kCrash, kStart + seconds(1)));
   EXPECT_EQ(plan.on_end(kCrash, kStart + seconds(1000)).pause, milliseconds(400));
 }
 
 TEST(RestartPlan, TellsAnEndAndWhenItGoesOn) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   EXPECT_THAT(plan.on_end(kCrash, kStart).report,
               Optional(std::string("axisgate-dds crashed: signal 11 (SEGV); started again in 0.2 s")));
 }
 
 TEST(RestartPlan, TellsAnotherEndAndTheSameOneAfterItWasReady) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   EXPECT_TRUE(plan.on_end(kNoParticipant, kStart).report);
   EXPECT_FALSE(plan.on_end(kNoParticipant, kStart).report) << "once";
   EXPECT_TRUE(plan.on_end(kCrash, kStart).report);
@@ -73,15 +76,15 @@ TEST(RestartPlan, TellsAnotherEndAndTheSameOneAfterItWasReady) {
 }
 
 TEST(RestartPlan, SaysThatAMissingProgramIsLookedForAgain) {
-  RestartPlan plan;
+  RestartPlan plan(kProgram);
   EXPECT_THAT(plan.on_end({ProcessEnd::How::not_found, 0, "there is no /usr/bin/axisgate-dds"}, kStart).report,
               Optional(std::string("axisgate-dds is not installed: there is no /usr/bin/axisgate-dds; it is looked for "
                                    "again from time to time")));
 }
 
 TEST(RestartPlan, LooksEachSecondForAnInterfaceThatIsNotThereYet) {
-  const ProcessEnd no_address{ProcessEnd::How::exited, kExitNoAddress};
-  RestartPlan plan;
+  const ProcessEnd no_address{ProcessEnd::How::exited, link::kExitNoAddress};
+  RestartPlan plan(kProgram);
   EXPECT_THAT(plan.on_end(no_address, kStart).report,
               Optional(std::string("axisgate-dds has no address yet on one of its `interfaces`, which its own line of "
                                    "the log names; trying again each second")));
@@ -92,13 +95,14 @@ TEST(RestartPlan, LooksEachSecondForAnInterfaceThatIsNotThereYet) {
 
 TEST(ProcessEnd, HasWordsOfItsOwnForEachWay) {
   std::vector<std::string> words;
-  for (const int code :
-       {kExitGatewayGone, 1, kExitUsage, kExitInternal, kExitParticipant, kExitProtocol, kExitMemory, kExitNoAddress})
-    words.push_back(text({ProcessEnd::How::exited, code}));
-  for (const int signal : {SIGKILL, SIGBUS, SIGSEGV, SIGTERM}) words.push_back(text({ProcessEnd::How::killed, signal}));
+  for (const int code : {link::kExitGatewayGone, 1, link::kExitUsage, link::kExitInternal, link::kExitCannotServe,
+                         link::kExitProtocol, link::kExitMemory, link::kExitNoAddress})
+    words.push_back(text(kProgram, {ProcessEnd::How::exited, code}));
+  for (const int signal : {SIGKILL, SIGBUS, SIGSEGV, SIGTERM})
+    words.push_back(text(kProgram, {ProcessEnd::How::killed, signal}));
   for (auto how = ProcessEnd::How::unknown; how <= ProcessEnd::How::closed;
        how = static_cast<ProcessEnd::How>(static_cast<int>(how) + 1))
-    words.push_back(text({how, 2, "x"}));
+    words.push_back(text(kProgram, {how, 2, "x"}));
   for (const std::string& word : words) {
     EXPECT_EQ(std::count(words.begin(), words.end(), word), 1) << word;
     EXPECT_TRUE(word.starts_with("axisgate-dds ")) << word;

@@ -2,8 +2,8 @@
 #include "gateway/upstream/dds_process/commands/axis_command_reader.hpp"
 
 #include "gateway/upstream/dds_link/stop_commands.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/to_idl.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -34,7 +34,7 @@ bool AxisCommandReader::History::is_stop(rtps::CacheChange_t& change) {
 }
 
 AxisCommandReader::AxisCommandReader(RtpsParticipant& participant, CommandTopic topic, CommandIntake& intake,
-                                     WriterWatch& watch, Wake& wake)
+                                     WriterWatch& watch, program::Wake& wake)
     : exclusive_(topic == CommandTopic::command),
       intake_(intake),
       watch_(watch),
@@ -47,7 +47,7 @@ AxisCommandReader::~AxisCommandReader() { RtpsParticipant::end_reader(reader_); 
 void AxisCommandReader::onReaderMatched(rtps::RTPSReader*, rtps::MatchingInfo& info) {
   const Guid writer = to_guid(info.remoteEndpointGuid);
   if (info.status == rtps::MATCHED_MATCHING) {
-    watch_.on_matched(writer, steady_now());
+    watch_.on_matched(writer, program::steady_now());
   } else {
     watch_.on_unmatched(writer);
   }
@@ -60,11 +60,12 @@ void AxisCommandReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::Cac
   auto* const mine = const_cast<rtps::CacheChange_t*>(change);
   if (read(type_, *mine, sample)) {
     const Guid writer = to_guid(change->writerGUID);
-    const SteadyNs now = steady_now();
+    const SteadyNs now = program::steady_now();
     watch_.on_sample(writer, now);
     const auto strength = static_cast<std::int32_t>(change->reader_info.writer_ownership_strength);
-    intake_.add(to_record(sample, {writer, exclusive_ ? strength : 0, to_steady(change->sourceTimestamp.to_ns())}),
-                now);
+    intake_.add(
+        to_record(sample, {writer, exclusive_ ? strength : 0, program::to_steady(change->sourceTimestamp.to_ns())}),
+        now);
   }
   history_.remove_change(mine);
   wake_.set();

@@ -12,8 +12,8 @@
 #include "gateway/upstream/dds_process/commands/command_intake.hpp"
 #include "gateway/upstream/dds_process/commands/rtps_participant.hpp"
 #include "gateway/upstream/dds_process/discovery/writer_watch.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
@@ -21,7 +21,7 @@ class AxisCommandReader : private eprosima::fastrtps::rtps::ReaderListener {
  public:
   /// `topic`: command or shared_command. `intake` and `watch` must outlive it.
   AxisCommandReader(RtpsParticipant& participant, CommandTopic topic, CommandIntake& intake, WriterWatch& watch,
-                    Wake& wake);
+                    program::Wake& wake);
   ~AxisCommandReader() override;
   AxisCommandReader(const AxisCommandReader&) = delete;
   AxisCommandReader& operator=(const AxisCommandReader&) = delete;
@@ -51,7 +51,7 @@ class AxisCommandReader : private eprosima::fastrtps::rtps::ReaderListener {
   const bool exclusive_;
   CommandIntake& intake_;
   WriterWatch& watch_;
-  Wake& wake_;
+  program::Wake& wake_;
   GuardedType<AxisCommandPubSubType> type_;
   History history_;
   eprosima::fastrtps::rtps::RTPSReader& reader_;

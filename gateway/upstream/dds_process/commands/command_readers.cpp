@@ -4,10 +4,10 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <type_traits>
 
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
 #include "gateway/upstream/dds_process/topics/reader_qos.hpp"
 #include "gateway/upstream/dds_process/topics/to_idl.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -37,7 +37,7 @@ HeartbeatRecord end_of_heartbeat(const fastdds::SampleInfo& info) {
 
 }  // namespace
 
-CommandReaders::CommandReaders(Participant& participant, std::uint32_t domain, WriterWatch& watch, Wake& wake)
+CommandReaders::CommandReaders(Participant& participant, std::uint32_t domain, WriterWatch& watch, program::Wake& wake)
     : participant_(participant),
       watch_(watch),
       wake_(wake),
@@ -68,9 +68,9 @@ bool CommandReaders::take_from(fastdds::DataReader& reader, std::size_t most, st
       continue;
     }
     const Guid writer = to_guid(info.sample_identity.writer_guid());
-    watch_.on_sample(writer, steady_now());
-    taken.emplace_back(to_record(
-        sample, {writer, 0, to_steady(info.source_timestamp.to_ns()), received_at(info.reception_timestamp.to_ns())}));
+    watch_.on_sample(writer, program::steady_now());
+    taken.emplace_back(to_record(sample, {writer, 0, program::to_steady(info.source_timestamp.to_ns()),
+                                          program::received_at(info.reception_timestamp.to_ns())}));
   }
   return false;
 }
@@ -88,7 +88,7 @@ void CommandReaders::on_subscription_matched(fastdds::DataReader* reader,
   if (reader->get_topicdescription()->get_name() != kObjectTopicName) return;
   const Guid writer = to_guid(eprosima::fastrtps::rtps::iHandle2GUID(info.last_publication_handle));
   if (info.current_count_change > 0) {
-    watch_.on_matched(writer, steady_now());
+    watch_.on_matched(writer, program::steady_now());
   } else {
     watch_.on_unmatched(writer);
   }

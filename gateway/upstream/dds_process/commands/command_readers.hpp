@@ -9,7 +9,7 @@
 #include "gateway/upstream/dds_process/commands/axis_command_reader.hpp"
 #include "gateway/upstream/dds_process/discovery/writer_watch.hpp"
 #include "gateway/upstream/dds_process/participant/participant.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kSamplesPerTurn = kHeartbeatsPerTurn + kStopsPerTur
 
 class CommandReaders : private fastdds::DataReaderListener {
  public:
-  CommandReaders(Participant& participant, std::uint32_t domain, WriterWatch& watch, Wake& wake);
+  CommandReaders(Participant& participant, std::uint32_t domain, WriterWatch& watch, program::Wake& wake);
   ~CommandReaders() override;
   CommandReaders(const CommandReaders&) = delete;
   CommandReaders& operator=(const CommandReaders&) = delete;
@@ -41,7 +41,7 @@ class CommandReaders : private fastdds::DataReaderListener {
 
   Participant& participant_;
   WriterWatch& watch_;
-  Wake& wake_;
+  program::Wake& wake_;
   CommandIntake intake_;
   RtpsParticipant rtps_;
   AxisCommandReader exclusive_;

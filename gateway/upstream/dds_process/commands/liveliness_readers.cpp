@@ -5,8 +5,8 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <set>
 
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -28,7 +28,8 @@ fastdds::DataReaderQos ear_qos(const LivelinessLease& lease) {
 
 class LivelinessReaders::Ear {
  public:
-  Ear(const LivelinessLease& lease, WriterWatch& watch, Wake& wake) : lease_(lease), watch_(watch), wake_(wake) {}
+  Ear(const LivelinessLease& lease, WriterWatch& watch, program::Wake& wake)
+      : lease_(lease), watch_(watch), wake_(wake) {}
   virtual ~Ear() = default;
   Ear(const Ear&) = delete;
   Ear& operator=(const Ear&) = delete;
@@ -47,12 +48,12 @@ class LivelinessReaders::Ear {
  private:
   const LivelinessLease lease_;
   WriterWatch& watch_;
-  Wake& wake_;
+  program::Wake& wake_;
 };
 
 class LivelinessReaders::CommandEar final : public Ear, private rtps::ReaderListener {
  public:
-  CommandEar(RtpsParticipant& participant, const LivelinessLease& lease, WriterWatch& watch, Wake& wake)
+  CommandEar(RtpsParticipant& participant, const LivelinessLease& lease, WriterWatch& watch, program::Wake& wake)
       : Ear(lease, watch, wake),
         history_(command_history()),
         reader_(participant.make_reader(lease, history_, *this)) {}
@@ -73,7 +74,7 @@ class LivelinessReaders::CommandEar final : public Ear, private rtps::ReaderList
 
 class LivelinessReaders::ObjectEar final : public Ear, private fastdds::DataReaderListener {
  public:
-  ObjectEar(Participant& participant, const LivelinessLease& lease, WriterWatch& watch, Wake& wake)
+  ObjectEar(Participant& participant, const LivelinessLease& lease, WriterWatch& watch, program::Wake& wake)
       : Ear(lease, watch, wake),
         participant_(participant),
         reader_(participant.make_reader(kObjectTopicName, object_type(), ear_qos(lease), this)) {}
@@ -94,7 +95,8 @@ class LivelinessReaders::ObjectEar final : public Ear, private fastdds::DataRead
   fastdds::DataReader& reader_;
 };
 
-LivelinessReaders::LivelinessReaders(RtpsParticipant& commands, Participant& objects, WriterWatch& watch, Wake& wake)
+LivelinessReaders::LivelinessReaders(RtpsParticipant& commands, Participant& objects, WriterWatch& watch,
+                                     program::Wake& wake)
     : commands_(commands), objects_(objects), watch_(watch), wake_(wake) {}
 
 LivelinessReaders::~LivelinessReaders() = default;

@@ -12,7 +12,7 @@
 #include "gateway/upstream/dds_process/commands/rtps_participant.hpp"
 #include "gateway/upstream/dds_process/discovery/writer_watch.hpp"
 #include "gateway/upstream/dds_process/participant/participant.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxLeasesHeard = 24;
 class LivelinessReaders {
  public:
   /// `commands`: of the readers of axis_command; `objects`: of that of object_request.
-  LivelinessReaders(RtpsParticipant& commands, Participant& objects, WriterWatch& watch, Wake& wake);
+  LivelinessReaders(RtpsParticipant& commands, Participant& objects, WriterWatch& watch, program::Wake& wake);
   ~LivelinessReaders();
   LivelinessReaders(const LivelinessReaders&) = delete;
   LivelinessReaders& operator=(const LivelinessReaders&) = delete;
@@ -37,7 +37,7 @@ class LivelinessReaders {
   RtpsParticipant& commands_;
   Participant& objects_;
   WriterWatch& watch_;
-  Wake& wake_;
+  program::Wake& wake_;
   std::map<LivelinessLease, std::unique_ptr<Ear>> ears_;
 };
 

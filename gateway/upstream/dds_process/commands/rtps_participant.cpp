@@ -8,10 +8,10 @@
 #include <fastrtps/attributes/TopicAttributes.h>
 #include <fastrtps/qos/ReaderQos.h>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -85,7 +85,7 @@ rtps::RTPSParticipantAttributes attributes_of(const eprosima::fastdds::dds::Doma
 RtpsParticipant::RtpsParticipant(std::uint32_t domain, const eprosima::fastdds::dds::DomainParticipantQos& qos)
     : participant_(rtps::RTPSDomain::createParticipant(domain, attributes_of(qos))) {
   if (participant_ == nullptr)
-    throw StartError(kExitParticipant, "the DDS participant that reads commands cannot be made");
+    throw program::StartError(link::kExitCannotServe, "the DDS participant that reads commands cannot be made");
 }
 
 RtpsParticipant::~RtpsParticipant() { rtps::RTPSDomain::removeRTPSParticipant(participant_); }
@@ -103,7 +103,7 @@ rtps::RTPSReader& RtpsParticipant::make_reader(const LivelinessLease& asked, rtp
   described.auto_fill_type_object = false;
   described.auto_fill_type_information = false;
   if (made == nullptr || !participant_->registerReader(made, described, announced_qos(asked)))
-    throw StartError(kExitParticipant, "a reader of topic axisgate/axis_command cannot be made");
+    throw program::StartError(link::kExitCannotServe, "a reader of topic axisgate/axis_command cannot be made");
   return *made;
 }
 

@@ -17,7 +17,8 @@ fastdds::DataReaderQos namesake_qos(bool reliable) { return reader_qos(reliable,
 
 }  // namespace
 
-NamesakeReader::NamesakeReader(Participant& participant, bool behind_a_server, NamesakeWatch& watch, Wake& wake)
+NamesakeReader::NamesakeReader(Participant& participant, bool behind_a_server, NamesakeWatch& watch,
+                               program::Wake& wake)
     : participant_(participant), watch_(watch), wake_(wake) {
   if (!behind_a_server) return;
   const fastdds::TypeSupport type(new GuardedType<GatewayStatePubSubType>());

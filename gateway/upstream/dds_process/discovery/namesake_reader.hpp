@@ -8,13 +8,13 @@
 
 #include "gateway/upstream/dds_process/discovery/namesake_watch.hpp"
 #include "gateway/upstream/dds_process/participant/participant.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
 class NamesakeReader : private fastdds::DataReaderListener {
  public:
-  NamesakeReader(Participant& participant, bool behind_a_server, NamesakeWatch& watch, Wake& wake);
+  NamesakeReader(Participant& participant, bool behind_a_server, NamesakeWatch& watch, program::Wake& wake);
   ~NamesakeReader() override;
   NamesakeReader(const NamesakeReader&) = delete;
   NamesakeReader& operator=(const NamesakeReader&) = delete;
@@ -30,7 +30,7 @@ class NamesakeReader : private fastdds::DataReaderListener {
 
   Participant& participant_;
   NamesakeWatch& watch_;
-  Wake& wake_;
+  program::Wake& wake_;
   fastdds::DataReader* reader_ = nullptr;
   fastdds::DataReader* gateways_ = nullptr;  ///< behind a discovery server
 };

@@ -3,8 +3,8 @@
 
 #include <fastrtps/utils/IPLocator.h>
 
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {

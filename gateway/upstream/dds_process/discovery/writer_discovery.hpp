@@ -6,14 +6,14 @@
 #include "gateway/upstream/dds_process/discovery/namesake_watch.hpp"
 #include "gateway/upstream/dds_process/discovery/writer_watch.hpp"
 #include "gateway/upstream/dds_process/participant/participant.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
 /// Hears of all writers of the domain; must be there before the participant is, and outlive it.
 class WriterDiscovery : public fastdds::DomainParticipantListener {
  public:
-  WriterDiscovery(WriterWatch& commanders, NamesakeWatch& namesakes, Wake& wake)
+  WriterDiscovery(WriterWatch& commanders, NamesakeWatch& namesakes, program::Wake& wake)
       : commanders_(commanders), namesakes_(namesakes), wake_(wake) {}
   void on_publisher_discovery(fastdds::DomainParticipant* participant,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
@@ -21,7 +21,7 @@ class WriterDiscovery : public fastdds::DomainParticipantListener {
  private:
   WriterWatch& commanders_;
   NamesakeWatch& namesakes_;
-  Wake& wake_;
+  program::Wake& wake_;
 };
 
 }  // namespace axisgate::dds

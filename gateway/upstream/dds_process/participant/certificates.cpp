@@ -13,8 +13,8 @@
 #include <memory>
 #include <string_view>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -56,8 +56,8 @@ Guid guid_of_certificate(const std::string& file) {
   unsigned int size = 0;
   if (!certificate ||
       X509_NAME_digest(X509_get_subject_name(certificate.get()), EVP_sha256(), digest.data(), &size) != 1)
-    throw StartError(kExitParticipant,
-                     fmt::format("--certificate {}: no certificate in PEM can be read from it", file));
+    throw program::StartError(link::kExitCannotServe,
+                              fmt::format("--certificate {}: no certificate in PEM can be read from it", file));
   // One bit that is 1, then 47 of the digest.
   Guid out{};
   unsigned carried = 1;
@@ -70,7 +70,7 @@ Guid guid_of_certificate(const std::string& file) {
 
 void require_authentication(const fastdds::DomainParticipantQos& qos) {
   const auto refuse = [](const std::string& why) {
-    throw StartError(kExitParticipant, "--certificate: whose a writer is must be proven, and " + why);
+    throw program::StartError(link::kExitCannotServe, "--certificate: whose a writer is must be proven, and " + why);
   };
   if (property(qos, "dds.sec.auth.plugin") != "builtin.PKI-DH" ||
       property(qos, "dds.sec.access.plugin") != "builtin.Access-Permissions" ||

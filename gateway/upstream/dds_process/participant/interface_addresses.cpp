@@ -10,8 +10,8 @@
 #include <memory>
 #include <set>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -23,7 +23,8 @@ struct Address {
 
 std::vector<Address> all_addresses() {
   ifaddrs* first = nullptr;
-  if (getifaddrs(&first) != 0) throw StartError(kExitParticipant, "the list of network interfaces cannot be read");
+  if (getifaddrs(&first) != 0)
+    throw program::StartError(link::kExitCannotServe, "the list of network interfaces cannot be read");
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(first, &freeifaddrs);
   std::vector<Address> all;
   for (const ifaddrs* each = first; each != nullptr; each = each->ifa_next) {
@@ -48,8 +49,8 @@ std::vector<std::string> interface_addresses(const std::vector<std::string>& nam
     if (addresses.size() > before) continue;
     std::vector<std::string> there;
     for (const Address& each : all) there.push_back(fmt::format("{} ({})", each.interface, each.address));
-    throw StartError(
-        kExitNoAddress,
+    throw program::StartError(
+        link::kExitNoAddress,
         fmt::format("--interface {}: no interface of that name or address has an IPv4 address now; there are: {}", name,
                     fmt::join(there, ", ")));
   }

@@ -15,9 +15,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
 #include "gateway/upstream/dds_process/participant/interface_addresses.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -48,9 +48,10 @@ Locator_t parse_locator(const std::string& option, const std::string& text, bool
   }
   Locator_t locator(LOCATOR_KIND_UDPv4, port);
   if (!good || !IPLocator::setIPv4(locator, address)) {
-    throw StartError(
-        kExitUsage, fmt::format("{} {}: give an IPv4 address{}, such as 192.168.1.5{}", option, text,
-                                port_needed ? " and a port" : ", with a port or without", port_needed ? ":11811" : ""));
+    throw program::StartError(
+        link::kExitUsage,
+        fmt::format("{} {}: give an IPv4 address{}, such as 192.168.1.5{}", option, text,
+                    port_needed ? " and a port" : ", with a port or without", port_needed ? ":11811" : ""));
   }
   return locator;
 }
@@ -114,7 +115,7 @@ void keep_participants_apart() {
 
 std::string read_qos_file(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw StartError(kExitParticipant, fmt::format("--qos-file {}: cannot be read", path));
+  if (!file) throw program::StartError(link::kExitCannotServe, fmt::format("--qos-file {}: cannot be read", path));
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
@@ -125,8 +126,8 @@ Participant::Participant(const ParticipantOptions& options, fastdds::DomainParti
   if (!options.qos_file.empty()) {
     qos_text_ = read_qos_file(options.qos_file);
     if (factory->load_XML_profiles_file(options.qos_file) != ReturnCode_t::RETCODE_OK) {
-      throw StartError(
-          kExitParticipant,
+      throw program::StartError(
+          link::kExitCannotServe,
           fmt::format("--qos-file {}: no valid file of Fast DDS XML profiles (the lines before this one say "
                       "where)",
                       options.qos_file));
@@ -136,8 +137,9 @@ Participant::Participant(const ParticipantOptions& options, fastdds::DomainParti
   fastdds::DomainParticipantQos qos;
   if (in_qos_file(kParticipantProfile)) {
     if (factory->get_participant_qos_from_profile(kParticipantProfile, qos) != ReturnCode_t::RETCODE_OK) {
-      throw StartError(kExitParticipant, fmt::format("--qos-file {}: profile {} is no participant profile",
-                                                     options.qos_file, kParticipantProfile));
+      throw program::StartError(
+          link::kExitCannotServe,
+          fmt::format("--qos-file {}: profile {} is no participant profile", options.qos_file, kParticipantProfile));
     }
   } else {
     const std::vector<std::string> addresses = interface_addresses(options.interfaces);
@@ -155,8 +157,8 @@ Participant::Participant(const ParticipantOptions& options, fastdds::DomainParti
     subscriber_ = participant_->create_subscriber(fastdds::SUBSCRIBER_QOS_DEFAULT);
   }
   if (publisher_ == nullptr || subscriber_ == nullptr) {
-    throw StartError(
-        kExitParticipant,
+    throw program::StartError(
+        link::kExitCannotServe,
         fmt::format("the DDS participant of domain {} (--domain) cannot be made on {}: are its UDP ports (from "
                     "{}) taken or forbidden?",
                     options.domain, fmt::join(options.interfaces, ", "), spdp_port(options.domain)));
@@ -185,7 +187,7 @@ fastdds::Topic* Participant::find_or_make_topic(const std::string& topic, fastdd
   if (type.register_type(participant_) == ReturnCode_t::RETCODE_OK) {
     made = participant_->create_topic(topic, type.get_type_name(), fastdds::TOPIC_QOS_DEFAULT);
   }
-  if (made == nullptr) throw StartError(kExitParticipant, fmt::format("topic {} cannot be made", topic));
+  if (made == nullptr) throw program::StartError(link::kExitCannotServe, fmt::format("topic {} cannot be made", topic));
   return made;
 }
 
@@ -195,13 +197,14 @@ fastdds::DataWriter& Participant::make_writer(const std::string& topic, const st
                                               fastdds::DataWriterListener* listener) {
   const std::string profile = "axisgate_" + name;
   if (in_qos_file(profile) && publisher_->get_datawriter_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
-    throw StartError(kExitParticipant, fmt::format("--qos-file: profile {} is no data_writer profile", profile));
+    throw program::StartError(link::kExitCannotServe,
+                              fmt::format("--qos-file: profile {} is no data_writer profile", profile));
   }
   if (!user_data.empty()) qos.user_data().data_vec(user_data);
   fastdds::DataWriter* made = publisher_->create_datawriter(find_or_make_topic(topic, std::move(type)), qos, listener);
   if (made == nullptr) {
-    throw StartError(kExitParticipant,
-                     fmt::format("the writer of topic {} cannot be made: is its QoS consistent?", topic));
+    throw program::StartError(link::kExitCannotServe,
+                              fmt::format("the writer of topic {} cannot be made: is its QoS consistent?", topic));
   }
   return *made;
 }
@@ -209,7 +212,8 @@ fastdds::DataWriter& Participant::make_writer(const std::string& topic, const st
 fastdds::DataReaderQos Participant::reader_qos_of(const std::string& name, fastdds::DataReaderQos qos) const {
   const std::string profile = "axisgate_" + name;
   if (in_qos_file(profile) && subscriber_->get_datareader_qos_from_profile(profile, qos) != ReturnCode_t::RETCODE_OK) {
-    throw StartError(kExitParticipant, fmt::format("--qos-file: profile {} is no data_reader profile", profile));
+    throw program::StartError(link::kExitCannotServe,
+                              fmt::format("--qos-file: profile {} is no data_reader profile", profile));
   }
   return qos;
 }
@@ -219,8 +223,8 @@ fastdds::DataReader& Participant::make_reader(const std::string& topic, fastdds:
                                               fastdds::DataReaderListener* listener) {
   fastdds::DataReader* made = subscriber_->create_datareader(find_or_make_topic(topic, std::move(type)), qos, listener);
   if (made == nullptr) {
-    throw StartError(kExitParticipant,
-                     fmt::format("the reader of topic {} cannot be made: is its QoS consistent?", topic));
+    throw program::StartError(link::kExitCannotServe,
+                              fmt::format("the reader of topic {} cannot be made: is its QoS consistent?", topic));
   }
   return *made;
 }

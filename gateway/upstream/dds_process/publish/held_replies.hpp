@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gateway/upstream/dds_link/records.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 

@@ -27,7 +27,7 @@ void write(fastdds::DataWriter& writer, Sample sample) {
 
 }  // namespace
 
-Publishers::Publishers(Participant& participant, const GatewayId& gateway, Wake& wake)
+Publishers::Publishers(Participant& participant, const GatewayId& gateway, program::Wake& wake)
     : gateway_(gateway),
       axis_state_(participant.make_writer(kStateTopicName, "axis_state", type<AxisStatePubSubType>(),
                                           writer_qos(1, kMostStates, true), gateway_user_data(gateway.key))),

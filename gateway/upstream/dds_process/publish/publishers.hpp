@@ -14,7 +14,7 @@ namespace axisgate::dds {
 
 class Publishers {
  public:
-  Publishers(Participant& participant, const GatewayId& gateway, Wake& wake);
+  Publishers(Participant& participant, const GatewayId& gateway, program::Wake& wake);
 
   /// False: the record is none of those that go out.
   bool publish(const Record& record, SteadyNs now, ClockDifference difference);

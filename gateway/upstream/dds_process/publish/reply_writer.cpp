@@ -9,7 +9,7 @@ namespace axisgate::dds {
 using eprosima::fastrtps::types::ReturnCode_t;
 
 ReplyWriter::ReplyWriter(Participant& participant, const std::string& name, const fastdds::TypeSupport& type,
-                         const GatewayId& gateway, Wake& wake)
+                         const GatewayId& gateway, program::Wake& wake)
     : gateway_(gateway),
       wake_(wake),
       writer_(participant.make_writer("axisgate/" + name, name, type, writer_qos(kRepliesKept, kMostInstances, false),
@@ -43,7 +43,7 @@ void ReplyWriter::make_room(std::uint16_t axis) {
 void ReplyWriter::on_publication_matched(fastdds::DataWriter*, const fastdds::PublicationMatchedStatus& info) {
   const Guid reader = to_guid(eprosima::fastrtps::rtps::iHandle2GUID(info.last_subscription_handle));
   if (info.current_count_change > 0) {
-    held_.on_reader(reader, steady_now());
+    held_.on_reader(reader, program::steady_now());
     wake_.set();
   } else {
     held_.on_reader_gone(reader);

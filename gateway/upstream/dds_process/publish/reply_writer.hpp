@@ -9,8 +9,8 @@
 
 #include "gateway/upstream/dds_process/participant/participant.hpp"
 #include "gateway/upstream/dds_process/publish/held_replies.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
 #include "gateway/upstream/dds_process/topics/to_idl.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostRepliesKept = 500 * kRepliesKept;
 class ReplyWriter : private fastdds::DataWriterListener {
  public:
   ReplyWriter(Participant& participant, const std::string& name, const fastdds::TypeSupport& type,
-              const GatewayId& gateway, Wake& wake);
+              const GatewayId& gateway, program::Wake& wake);
   ~ReplyWriter() override;
   ReplyWriter(const ReplyWriter&) = delete;
   ReplyWriter& operator=(const ReplyWriter&) = delete;
@@ -48,7 +48,7 @@ class ReplyWriter : private fastdds::DataWriterListener {
   }
 
   const GatewayId& gateway_;
-  Wake& wake_;
+  program::Wake& wake_;
   HeldReplies held_;
   /// What the library keeps at most of each axis number, and in all: written since all readers had everything.
   std::map<std::uint16_t, std::size_t> kept_of_;

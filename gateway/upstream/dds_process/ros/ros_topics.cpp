@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "gateway/upstream/dds_link/ros_names.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
 #include "gateway/upstream/dds_process/topics/command_topics.hpp"
 #include "gateway/upstream/dds_process/topics/guarded_type.hpp"
 #include "gateway/upstream/dds_process/topics/reader_qos.hpp"
 #include "gateway/upstream/dds_process/topics/writer_qos.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 namespace {
@@ -62,7 +62,7 @@ JointCommandsRecord to_record(const JointState& sample, const fastdds::SampleInf
   JointCommandsRecord out;
   out.writer = to_guid(info.sample_identity.writer_guid());
   out.written = written_at(info, difference);
-  out.received = received_at(info.reception_timestamp.to_ns());
+  out.received = program::received_at(info.reception_timestamp.to_ns());
   out.names = at_most_one_more(sample.name());
   for (std::string& name : out.names)
     if (name.size() > kMaxName) name.clear();
@@ -74,7 +74,7 @@ JointCommandsRecord to_record(const JointState& sample, const fastdds::SampleInf
 
 }  // namespace
 
-RosTopics::RosTopics(Participant& participant, Wake& wake, const std::string& gateway, SteadyNs min_period,
+RosTopics::RosTopics(Participant& participant, program::Wake& wake, const std::string& gateway, SteadyNs min_period,
                      bool commands)
     : participant_(participant),
       wake_(wake),
@@ -189,7 +189,7 @@ std::size_t RosTopics::take_actions(std::uint16_t axis, std::size_t topic, fastd
     if (!info.valid_data) continue;
     const RosAction action = has_flag && !flag.data() ? RosAction::disable : kAxisTopics[topic].action;
     taken.push_back({to_guid(info.sample_identity.writer_guid()), written_at(info, difference), axis,
-                     static_cast<std::uint8_t>(action), received_at(info.reception_timestamp.to_ns())});
+                     static_cast<std::uint8_t>(action), program::received_at(info.reception_timestamp.to_ns())});
   }
   return most;
 }

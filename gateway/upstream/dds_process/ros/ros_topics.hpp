@@ -15,7 +15,7 @@
 #include "gateway/upstream/dds_process/participant/participant.hpp"
 #include "gateway/upstream/dds_process/ros/joint_states.hpp"
 #include "gateway/upstream/dds_process/ros/ros_diagnostics.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
@@ -32,7 +32,8 @@ inline constexpr std::size_t kRosSamplesPerTurn = kRosTopicsOfAnAxis * kRosActio
 class RosTopics : private fastdds::DataReaderListener {
  public:
   /// `gateway`: its name, the namespace of all names. `commands`: what comes in is read.
-  RosTopics(Participant& participant, Wake& wake, const std::string& gateway, SteadyNs min_period, bool commands);
+  RosTopics(Participant& participant, program::Wake& wake, const std::string& gateway, SteadyNs min_period,
+            bool commands);
   ~RosTopics() override;
   RosTopics(const RosTopics&) = delete;
   RosTopics& operator=(const RosTopics&) = delete;
@@ -61,7 +62,7 @@ class RosTopics : private fastdds::DataReaderListener {
                            ClockDifference difference, std::vector<RosActionRecord>& taken);
 
   Participant& participant_;
-  Wake& wake_;
+  program::Wake& wake_;
   std::string gateway_;
   SteadyNs min_period_;
   fastdds::DataWriter& joint_states_;

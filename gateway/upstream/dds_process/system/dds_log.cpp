@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/system/dds_log.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 #include <fastdds/dds/log/Log.hpp>
 #include <memory>

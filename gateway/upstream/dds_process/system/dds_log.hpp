@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "gateway/upstream/dds_link/records.hpp"
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 namespace axisgate::dds {
 
@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxLogLinesPerSecond = 5;
 
 class DdsLog {
  public:
-  explicit DdsLog(Wake& wake) : wake_(wake) {}
+  explicit DdsLog(program::Wake& wake) : wake_(wake) {}
 
   /// From any thread.
   void add(LogRecord line);
@@ -26,7 +26,7 @@ class DdsLog {
   [[nodiscard]] std::optional<LogRecord> next(SteadyNs now);
 
  private:
-  Wake& wake_;
+  program::Wake& wake_;
   std::mutex mutex_;
   std::deque<LogRecord> lines_;
   std::size_t left_out_ = 0;

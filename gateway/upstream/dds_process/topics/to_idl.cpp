@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/dds_process/topics/to_idl.hpp"
 #include "gateway/upstream/dds_link/command_mask.hpp"
-#include "gateway/upstream/dds_process/system/steady.hpp"
+#include "gateway/upstream/program/steady.hpp"
 
 namespace axisgate::dds {
 

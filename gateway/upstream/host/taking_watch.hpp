@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether axisgate-dds still takes what it is sent, judged by how much of it lies unread in the socket.
+// Whether a program still takes what it is sent, judged by how much of it lies unread in the socket.
 // Promises that a slow reader is never taken for a dead one: what it takes makes less unread than was sent.
 // Never looks at the socket itself.
 #pragma once
@@ -9,7 +9,7 @@
 
 #include "gateway/core/clock.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::host {
 
 /// Nothing was taken for so long, with something to take.
 inline constexpr Duration kTakesWithin = std::chrono::seconds(10);
@@ -37,4 +37,4 @@ class TakingWatch {
   std::size_t sent_ = 0;  ///< since the last look
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host

@@ -15,24 +15,24 @@
 #include <variant>
 #include <vector>
 
-#include "gateway/upstream/dds_host/packet_socket.hpp"
-#include "gateway/upstream/dds_host/restart_cause.hpp"
+#include "gateway/upstream/host/packet_socket.hpp"
+#include "gateway/upstream/host/restart_cause.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::host {
 
 /// The socket's number in the program.
 inline constexpr int kLinkDescriptor = 3;
 /// Of ours: both ends of the pair while it starts, its pidfd, and one more.
 inline constexpr std::uint64_t kDescriptorsNeeded = 4;
-/// Below the gateway's own priority, so that the core gets the processor first.
-inline constexpr int kNicer = 5;
 
 class ChildProcess {
  public:
-  /// `on_end` runs on the context's thread, once, not after the object is destroyed.
+  /// `nicer`: below this process's own priority. `on_end` runs on the context's thread, once, not after the object is
+  /// destroyed.
   static std::variant<std::unique_ptr<ChildProcess>, ProcessEnd> start(boost::asio::io_context& context,
                                                                        const std::string& program,
                                                                        const std::vector<std::string>& arguments,
+                                                                       int nicer,
                                                                        std::function<void(const ProcessEnd&)> on_end);
   /// Closes the socket, which tells the program to end; one that has not done so in time is killed.
   ~ChildProcess();
@@ -61,4 +61,4 @@ class ChildProcess {
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host

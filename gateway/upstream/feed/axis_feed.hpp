@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whose state is to be sent next: each axis on change, at most each min_period, at least each max_period.
+// Whose state a reader is to be sent next: each axis on change, at most each min_period, at least each max_period.
 // Promises that of several the one that is due longest comes first, so that none is passed over for ever, and that an
 // axis waits in one place only: where the reader is slow, the newest state is what it gets. Never holds a state.
 #pragma once
@@ -11,11 +11,11 @@
 
 #include "gateway/image/axis_image.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::feed {
 
-class StateFeed {
+class AxisFeed {
  public:
-  StateFeed(Duration min_period, Duration max_period) : min_period_(min_period), max_period_(max_period) {}
+  AxisFeed(Duration min_period, Duration max_period) : min_period_(min_period), max_period_(max_period) {}
 
   /// An axis that there is, due at once.
   void add(AxisNumber axis, Instant now);
@@ -27,6 +27,8 @@ class StateFeed {
   void all_due(Instant now);
   /// The axis whose turn it is; it counts as sent.
   [[nodiscard]] std::optional<AxisNumber> next(Instant now);
+  /// How many are due now.
+  [[nodiscard]] std::size_t waiting(Instant now) const;
   /// When the next one is due; kNever without axes.
   [[nodiscard]] Instant due() const { return queue_.empty() ? kNever : queue_.begin()->at; }
 
@@ -50,4 +52,4 @@ class StateFeed {
   std::uint64_t order_ = 0;
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::feed

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How threads of the DDS library tell the one thread that works that there is something to do: an eventfd.
+// How other threads tell the one that works that there is something to do: an eventfd.
 // Promises that set() never blocks and may come from any thread, and that many of it are one wake-up.
 // Never says what there is to do.
 #pragma once
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
 class Wake {
  public:
@@ -21,4 +21,4 @@ class Wake {
   int fd_;
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

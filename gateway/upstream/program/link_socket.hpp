@@ -1,38 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// axisgate-dds's end of the socket pair to the gateway: records in, records out, one a packet.
+// A program's end of the socket pair to the gateway: packets in, packets out.
 // Promises that nothing blocks: what the gateway does not take waits here in its order, at most kMaxPacketsWaiting.
-// Never loses what it has accepted, and never interprets a record.
+// Never loses what it has accepted, and never interprets a packet: RecordLink does, by the program's own records.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <string>
 #include <vector>
 
-#include "gateway/upstream/dds_link/records.hpp"
+#include "gateway/upstream/link/coder.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
 inline constexpr std::size_t kMaxPacketsWaiting = 4096;
 
+enum class Received : std::uint8_t { packet, nothing, closed, garbage };
+
 class LinkSocket {
  public:
-  /// Takes the descriptor over. Throws StartError where it is no SOCK_SEQPACKET socket.
-  explicit LinkSocket(int fd);
+  /// Takes the descriptor over. Throws StartError where it is no SOCK_SEQPACKET socket; `hint`: what else one may have
+  /// wanted of this program.
+  LinkSocket(int fd, const std::string& hint);
   ~LinkSocket();
   LinkSocket(const LinkSocket&) = delete;
   LinkSocket& operator=(const LinkSocket&) = delete;
 
-  enum class Received : std::uint8_t { record, nothing, closed, garbage };
   struct Packet {
     Received what = Received::nothing;
-    Record record{};
+    Bytes bytes{};          ///< good until the next receive()
     std::string problem{};  ///< of garbage
   };
   [[nodiscard]] Packet receive();
 
-  /// False where kMaxPacketsWaiting packets wait already: the record was not taken.
-  bool send(const Record& record);
+  /// False where kMaxPacketsWaiting packets wait already: the packet was not taken.
+  bool send(std::vector<Byte> packet);
   /// Sends what waits. False: the gateway is gone.
   bool flush();
   /// Nothing waits: what is sent now goes out at once.
@@ -46,4 +49,4 @@ class LinkSocket {
   std::deque<std::vector<Byte>> waiting_;
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_host/packet_socket.hpp"
+#include "gateway/upstream/host/packet_socket.hpp"
 
 #include <linux/sockios.h>
 #include <sys/ioctl.h>
@@ -8,12 +8,12 @@
 #include <cerrno>
 #include <utility>
 
-#include "gateway/upstream/dds_link/records.hpp"
+#include "gateway/upstream/link/coder.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::host {
 
 PacketSocket::PacketSocket(boost::asio::io_context& context, int descriptor)
-    : descriptor_(context, descriptor), buffer_(kMaxPacket) {}
+    : descriptor_(context, descriptor), buffer_(link::kMaxPacket) {}
 
 PacketSocket::Sent PacketSocket::send(Bytes packet) {
   ssize_t sent = 0;
@@ -48,4 +48,4 @@ void PacketSocket::wait(Wait::wait_type what, std::function<void()> call) {
   });
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
 void limit_memory(std::uint32_t mib);
 /// Ends the process where nearly all is taken: the library lives on with allocations that fail, but takes no sample any
@@ -15,4 +15,4 @@ void check_memory();
 /// Says so on stderr and ends the process.
 [[noreturn]] void end_for_memory();
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_host/restart_cause.hpp"
+#include "gateway/upstream/host/restart_cause.hpp"
 
 #include <csignal>
 #include <cstring>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "gateway/upstream/link/coder.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::host {
 namespace {
 
-std::string exit_text(int code) {
+std::string exit_text(const HostedProgram& program, int code) {
   switch (code) {
-    case kExitGatewayGone:
+    case link::kExitGatewayGone:
       return "lost its connection to the gateway";
-    case kExitUsage:
-      return "does not know its command line: axisgate and axisgate-dds are not of one installation";
-    case kExitInternal:
+    case link::kExitUsage:
+      return "does not know its command line: " + link::not_of_one_installation(program.name);
+    case link::kExitInternal:
       return "met a state that it cannot go on from";
-    case kExitParticipant:
-      return "could not create its participant: look at `domain` and `qos_file`, and at its own lines of the log";
-    case kExitNoAddress:
-      return "has no address yet on one of its `interfaces`, which its own line of the log names";
-    case kExitProtocol:
-      return "was sent what is no record: axisgate and axisgate-dds are not of one installation";
-    case kExitMemory:
+    case link::kExitCannotServe:
+      return std::string(program.cannot_serve);
+    case link::kExitNoAddress:
+      return std::string(program.no_address);
+    case link::kExitProtocol:
+      return "was sent what is no record: " + link::not_of_one_installation(program.name);
+    case link::kExitMemory:
       return "reached its memory limit (memory_limit_mb)";
     case 127:  // as a shell tells it
       return "is no program that this system can execute";
@@ -54,14 +55,14 @@ std::string signal_text(int signal) {
 }  // namespace
 
 bool has_no_address(const ProcessEnd& end) {
-  return end.how == ProcessEnd::How::exited && end.number == kExitNoAddress;
+  return end.how == ProcessEnd::How::exited && end.number == link::kExitNoAddress;
 }
 
-std::string text(const ProcessEnd& end) {
-  const std::string name = "axisgate-dds ";
+std::string text(const HostedProgram& program, const ProcessEnd& end) {
+  const std::string name = std::string(program.name) + " ";
   switch (end.how) {
     case ProcessEnd::How::exited:
-      return name + exit_text(end.number);
+      return name + exit_text(program, end.number);
     case ProcessEnd::How::killed:
       return name + signal_text(end.number);
     case ProcessEnd::How::unknown:
@@ -78,8 +79,10 @@ std::string text(const ProcessEnd& end) {
       return name + "sent " + end.detail + " and was killed";
     case ProcessEnd::How::closed:
       return name + "closed its connection, did not end and was killed";
+    case ProcessEnd::How::another_configuration:
+      return name + "was ended for another configuration";
   }
   return {};
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host

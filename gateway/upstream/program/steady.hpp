@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two clocks of this program: the steady one, which the gateway shares, and the time of day for samples.
+// The two clocks of a program: the steady one, which the gateway shares, and the time of day.
 // Promises nanoseconds.
 // Never is looked at by what decides.
 #pragma once
 
 #include <ctime>
 
-#include "gateway/upstream/dds_link/records.hpp"
+#include "gateway/upstream/link/coder.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
-inline constexpr SteadyNs kMillisecond = 1'000'000;
-inline constexpr SteadyNs kSecond = 1000 * kMillisecond;
+using link::SteadyNs;
 
 [[nodiscard]] inline SteadyNs clock_ns(clockid_t clock) {
   timespec now{};
@@ -23,15 +22,15 @@ inline constexpr SteadyNs kSecond = 1000 * kMillisecond;
 /// What is to be added to a steady instant.
 [[nodiscard]] inline std::int64_t time_of_day_difference() { return clock_ns(CLOCK_REALTIME) - steady_now(); }
 
-/// An instant of the time of day, as samples carry it; 0 where there is none.
+/// An instant of the time of day; 0 where there is none.
 [[nodiscard]] inline SteadyNs to_steady(std::int64_t of_day) {
   return of_day <= 0 ? 0 : of_day - time_of_day_difference();
 }
-/// When a sample was received, by the library's time of day: never ahead of now, and now where it does not say.
+/// When something was received, by the time of day: never ahead of now, and now where that is not known.
 [[nodiscard]] inline SteadyNs received_at(std::int64_t of_day) {
   const SteadyNs at = to_steady(of_day);
   const SteadyNs now = steady_now();
   return at <= 0 || at > now ? now : at;
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which events are still to be sent: by their numbers, out of the gateway's one ring.
 // Promises that they come in their order, once for each life of the reader, and that those which a slow or late reader
-// will never see are counted. Never copies an event before its turn.
+// will never see are counted. Never copies an event.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "gateway/image/events.hpp"
-#include "gateway/upstream/dds_link/records.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::feed {
+
+/// All that the ring has: at a start with many axes more happens than a process that starts beside them can take.
+inline constexpr std::size_t kMaxEventsWaiting = kMaxEvents;
 
 class EventFeed {
  public:
@@ -18,7 +19,8 @@ class EventFeed {
 
   /// A reader that knows nothing yet: the newest ones, also those that another one was sent before.
   void restart();
-  [[nodiscard]] std::optional<EventRecord> next();
+  /// Good until the ring is added to; null: none waits.
+  [[nodiscard]] const Event* next();
   [[nodiscard]] bool waiting() const { return sent_ < ring_.added(); }
   /// Events that no reader was ever sent, because newer ones took their place.
   [[nodiscard]] std::uint32_t lost() const { return lost_; }
@@ -33,4 +35,4 @@ class EventFeed {
   std::uint32_t lost_ = 0;
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::feed

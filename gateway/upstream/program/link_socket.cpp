@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_process/system/link_socket.hpp"
+#include "gateway/upstream/program/link_socket.hpp"
 
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <utility>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
-LinkSocket::LinkSocket(int fd) : fd_(fd), buffer_(kMaxPacket) {
+LinkSocket::LinkSocket(int fd, const std::string& hint) : fd_(fd), buffer_(link::kMaxPacket) {
   int type = 0;
   socklen_t size = sizeof(type);
   if (getsockopt(fd_, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_SEQPACKET) {
-    throw StartError(kExitUsage,
-                     "--link-fd " + std::to_string(fd) +
-                         ": no SOCK_SEQPACKET socket. The gateway gives this option; to look at topics, run: "
-                         "axisgate-dds topics");
+    throw StartError(link::kExitUsage, "--link-fd " + std::to_string(fd) +
+                                           ": no SOCK_SEQPACKET socket. The gateway gives this option" + hint);
   }
   fcntl(fd_, F_SETFD, FD_CLOEXEC);
 }
@@ -35,14 +34,12 @@ LinkSocket::Packet LinkSocket::receive() {
   if (size <= 0) return {Received::closed};
   const auto length = static_cast<std::size_t>(size);
   if (length > buffer_.size()) return {Received::garbage, {}, "a packet of " + std::to_string(length) + " bytes"};
-  Decoded decoded = decode(Bytes(buffer_).first(length));
-  if (decoded.error != DecodeError::none) return {Received::garbage, {}, text(decoded.error, "axisgate-dds")};
-  return {Received::record, std::move(decoded.record)};
+  return {Received::packet, Bytes(buffer_).first(length)};
 }
 
-bool LinkSocket::send(const Record& record) {
+bool LinkSocket::send(std::vector<Byte> packet) {
   if (waiting_.size() >= kMaxPacketsWaiting) return false;
-  waiting_.push_back(encode(record));
+  waiting_.push_back(std::move(packet));
   flush();
   return true;
 }
@@ -61,4 +58,4 @@ bool LinkSocket::flush() {
   return !gone_;
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

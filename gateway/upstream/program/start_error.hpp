@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <string>
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
 struct StartError : std::runtime_error {
   StartError(int code, const std::string& text) : std::runtime_error(text), exit_code(code) {}
   int exit_code;
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_process/system/memory_limit.hpp"
+#include "gateway/upstream/program/memory_limit.hpp"
 
 #include <fcntl.h>
 #include <malloc.h>
@@ -8,32 +8,35 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 #include <string_view>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::program {
 namespace {
 
-// The limit counts stacks whole: the library's dozen threads would take 8 MiB each.
+// The limit counts stacks whole: a library's dozen threads would take 8 MiB each.
 constexpr std::size_t kThreadStack = 1024 * 1024;
 constexpr int kMallocArenas = 2;
 /// Of the limit, for what a look at the loop's pace may miss. The library rejects samples where malloc fails for one,
 /// and would go on for ever with less than one block of its pools left.
 constexpr std::uint64_t kReserve = 3 * 1024 * 1024;
 
-/// On a thread of the library, which throws bad_alloc itself where its malloc fails; nobody catches it there.
+constexpr std::string_view kMemoryLine = ": memory limit reached (memory_limit_mb, --memory-limit-mib): ends\n";
+
+/// On a thread of a library, which throws bad_alloc itself where its malloc fails; nobody catches it there.
 [[noreturn]] void on_terminate() {
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
   } catch (const std::bad_alloc&) {
     end_for_memory();
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "axisgate-dds: not caught: %s\n", error.what());
+    std::fprintf(stderr, "%s: not caught: %s\n", program_invocation_short_name, error.what());
   } catch (...) {
   }
   std::abort();
@@ -42,9 +45,10 @@ constexpr std::uint64_t kReserve = 3 * 1024 * 1024;
 }  // namespace
 
 void end_for_memory() {
-  constexpr std::string_view kLine = "axisgate-dds: memory limit reached (--memory-limit-mib): ends\n";
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kLine.data(), kLine.size());
-  _exit(kExitMemory);
+  // No stream and no string: there may be no memory for either.
+  for (const std::string_view part : {std::string_view(program_invocation_short_name), kMemoryLine})
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, part.data(), part.size());
+  _exit(link::kExitMemory);
 }
 
 void check_memory() {
@@ -63,17 +67,19 @@ void check_memory() {
   }
 }
 
-void limit_memory(std::uint32_t mib) {
+void limit_memory([[maybe_unused]] std::uint32_t mib) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, kThreadStack);
   pthread_setattr_default_np(&attributes);
   pthread_attr_destroy(&attributes);
   mallopt(M_ARENA_MAX, kMallocArenas);
+#ifndef __SANITIZE_ADDRESS__  // its shadow memory would count as well
   const rlimit limit{rlim_t{mib} << 20, rlim_t{mib} << 20};
   setrlimit(RLIMIT_DATA, &limit);
+#endif
   std::set_new_handler(end_for_memory);
   std::set_terminate(on_terminate);
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds/event_feed.hpp"
+#include "gateway/upstream/feed/event_feed.hpp"
 
 #include <algorithm>
 
-#include "gateway/upstream/dds/dds_session.hpp"
-
-namespace axisgate::dds {
-
-static_assert(kMaxEventsWaiting <= kMaxEvents, "what waits is in the ring");
+namespace axisgate::feed {
 
 void EventFeed::restart() {
   sent_ = 0;
@@ -24,15 +20,13 @@ void EventFeed::keep_newest() {
   }
 }
 
-std::optional<EventRecord> EventFeed::next() {
+const Event* EventFeed::next() {
   keep_newest();
-  if (!waiting()) return std::nullopt;
+  if (!waiting()) return nullptr;
   const auto& events = ring_.events();
   const Event& event = events[static_cast<std::size_t>(sent_ + 1 - events.front().number)];
   seen_ = std::max(seen_, ++sent_);
-  return EventRecord{event.axis,   event.at == kLongAgo ? 0 : event.at.time_since_epoch().count(),
-                     event.number, static_cast<std::uint8_t>(event.kind),
-                     event.code,   event.text};
+  return &event;
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::feed

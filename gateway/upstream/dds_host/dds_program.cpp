@@ -1,39 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_host/program.hpp"
-
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
+#include "gateway/upstream/dds_host/dds_program.hpp"
 
 namespace axisgate::dds {
-namespace {
-
-namespace fs = std::filesystem;
-
-bool can_run(const fs::path& file) {
-  std::error_code error;
-  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
-}
-
-}  // namespace
-
-Program find_program() {
-  if (const char* const named = std::getenv("AXISGATE_DDS_PROGRAM"); named != nullptr && *named != '\0') {
-    if (can_run(named)) return {named, {}};
-    return {{}, "AXISGATE_DDS_PROGRAM names " + std::string(named) + ", which is no program"};
-  }
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  const fs::path beside = folder / "axisgate-dds";
-  const fs::path libexec = folder.parent_path() / "libexec/axisgate/axisgate-dds";
-  for (const fs::path& file : {beside, libexec})
-    if (can_run(file)) return {file.string(), {}};
-  return {{},
-          "there is neither " + beside.string() + " nor " + libexec.string() +
-              "; it is built with the CMake option AXISGATE_DDS=ON (Debian packages libfastrtps-dev, fastddsgen and "
-              "default-jre-headless)"};
-}
 
 std::vector<std::string> participant_arguments(const DdsSettings& settings) {
   std::vector<std::string> out{"--domain=" + std::to_string(settings.domain)};

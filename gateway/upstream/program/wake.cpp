@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_process/system/wake.hpp"
+#include "gateway/upstream/program/wake.hpp"
 
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "gateway/upstream/dds_link/exit_codes.hpp"
-#include "gateway/upstream/dds_process/system/start_error.hpp"
+#include "gateway/upstream/link/exit_codes.hpp"
+#include "gateway/upstream/program/start_error.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::program {
 
 Wake::Wake() : fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (fd_ < 0) throw StartError(kExitInternal, "no descriptor for an eventfd: raise the limit of open files");
+  if (fd_ < 0) throw StartError(link::kExitInternal, "no descriptor for an eventfd: raise the limit of open files");
 }
 
 Wake::~Wake() { close(fd_); }
@@ -25,4 +25,4 @@ void Wake::clear() {
   [[maybe_unused]] const int done = eventfd_read(fd_, &count);
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::program

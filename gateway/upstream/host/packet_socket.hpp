@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gateway's end of the socket pair to axisgate-dds: packets in, packets out, none of them ever waited for.
+// The gateway's end of the socket pair to a program: packets in, packets out, none of them ever waited for.
 // Promises that one call sends or takes one packet whole, or none.
 // Never knows what is in a packet, and keeps none.
 #pragma once
@@ -14,7 +14,7 @@
 
 #include "gateway/core/bytes.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::host {
 
 class PacketSocket {
  public:
@@ -49,4 +49,4 @@ class PacketSocket {
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host

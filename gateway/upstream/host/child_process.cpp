@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_host/child_process.hpp"
+#include "gateway/upstream/host/child_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -16,9 +16,9 @@
 #include <optional>
 #include <utility>
 
-#include "gateway/upstream/dds_host/restart_plan.hpp"
+#include "gateway/upstream/host/restart_plan.hpp"
 
-namespace axisgate::dds {
+namespace axisgate::host {
 namespace {
 
 // <sys/pidfd.h> of glibc 2.36 cannot be linked from C++.
@@ -30,13 +30,13 @@ constexpr int kCannotExecute = 127;
 
 /// In the new process, before it is the program: async-signal-safe calls alone, since threads of ours may have held any
 /// lock when it was made.
-[[noreturn]] void become(const char* program, char* const* argv, int link) {
+[[noreturn]] void become(const char* program, char* const* argv, int nicer, int link) {
   // A group of its own: Ctrl-C goes to the gateway, which ends it.
   ::setpgid(0, 0);
   // No real-time priority of a service's; and below the gateway. A refusal changes nothing but who is served first.
   const sched_param usual{};
   ::sched_setscheduler(0, SCHED_OTHER, &usual);
-  ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + kNicer);
+  ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + nicer);
   ::signal(SIGPIPE, SIG_DFL);
   sigset_t none;
   ::sigemptyset(&none);
@@ -53,7 +53,7 @@ constexpr int kCannotExecute = 127;
 }
 
 /// Not posix_spawn(): that waits until the program runs, tens of milliseconds on a busy machine. -1: errno.
-pid_t begin_process(const std::string& program, const std::vector<std::string>& arguments, int link) {
+pid_t begin_process(const std::string& program, const std::vector<std::string>& arguments, int nicer, int link) {
   if (::access(program.c_str(), X_OK) != 0) return -1;
   std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -62,7 +62,7 @@ pid_t begin_process(const std::string& program, const std::vector<std::string>& 
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const pid_t pid = ::_Fork();
-  if (pid == 0) become(program.c_str(), argv.data(), link);
+  if (pid == 0) become(program.c_str(), argv.data(), nicer, link);
   return pid;
 }
 
@@ -75,12 +75,12 @@ ProcessEnd end_of(const siginfo_t& info) {
 }  // namespace
 
 std::variant<std::unique_ptr<ChildProcess>, ProcessEnd> ChildProcess::start(
-    boost::asio::io_context& context, const std::string& program, const std::vector<std::string>& arguments,
+    boost::asio::io_context& context, const std::string& program, const std::vector<std::string>& arguments, int nicer,
     std::function<void(const ProcessEnd&)> on_end) {
   std::array<int, 2> ends{};
   // Ours never blocks by the flag of each call; the program's is as it expects a descriptor to be.
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return not_started(errno);
-  const pid_t pid = begin_process(program, arguments, ends[1]);
+  const pid_t pid = begin_process(program, arguments, nicer, ends[1]);
   int error = errno;
   ::close(ends[1]);
   if (pid < 0) {
@@ -146,4 +146,4 @@ std::optional<ProcessEnd> ChildProcess::reap() {
   return reaped == 0 ? end_of(info) : ProcessEnd{};
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/dds_host/restart_plan.hpp"
+#include "gateway/upstream/host/restart_plan.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace axisgate::dds {
+namespace axisgate::host {
 namespace {
 
 std::string seconds_text(Duration time) {
@@ -19,7 +19,7 @@ std::string RestartPlan::on_ready(const std::string& version, Instant now) {
   ready_ = now;
   reported_.reset();
   const std::uint32_t failed = std::exchange(failed_, 0);
-  std::string report = "axisgate-dds " + version + " runs";
+  std::string report = std::string(program_.name) + " " + version + " runs";
   if (failed > 1) report += ", after " + std::to_string(failed) + " ends";
   return report;
 }
@@ -32,7 +32,7 @@ RestartPlan::Next RestartPlan::on_end(const ProcessEnd& end, Instant now) {
   ++failed_;
   if (reported_ == end) return next;
   reported_ = end;
-  next.report = text(end);
+  next.report = text(program_, end);
   if (end.how == ProcessEnd::How::not_found)
     *next.report += "; it is looked for again from time to time";
   else if (has_no_address(end))
@@ -42,4 +42,4 @@ RestartPlan::Next RestartPlan::on_end(const ProcessEnd& end, Instant now) {
   return next;
 }
 
-}  // namespace axisgate::dds
+}  // namespace axisgate::host
