@@ -108,7 +108,10 @@ bool Bus::take_wire_event() {
   }
   if (heard_up_) {
     heard_up_ = false;
-    link_up();
+    if (up_) return true;
+    up_ = true;
+    log_.write(LogLevel::info, log_source(), "link up");
+    for (BusDrive* drive : drives_) drive->on_link(true);
     return true;
   }
   return false;
@@ -161,8 +164,10 @@ void Bus::grant(const Arbiter::Grant& grant) {
     return;
   }
   ++statistics_.requests;
-  outstanding_ = {*exchange, grant.drive, now() + settings_.timeout, wire_->statistics().bad_frames};
-  load_.set_busy(true, now());
+  const Instant sent = now();
+  outstanding_ = {
+      *exchange, grant.drive, grant.priority, sent, sent + settings_.timeout, wire_->statistics().bad_frames};
+  load_.set_busy(true, sent);
   count_bits();
   wire_->send(*exchange);
 }
@@ -170,8 +175,10 @@ void Bus::grant(const Arbiter::Grant& grant) {
 void Bus::end_exchange(const ExchangeResult& result, Duration silence) {
   const Outstanding ended = *std::exchange(outstanding_, std::nullopt);
   if (result.code == Errc::ok) noisy_timeouts_[ended.drive] = 0;
-  load_.set_busy(false, now());
-  arbiter_.exchange_over(now() + silence, result.code == Errc::timed_out);
+  const Instant over = now();
+  if (result.code != Errc::link_lost) statistics_.times.add(ended.priority, over - ended.sent);
+  load_.set_busy(false, over);
+  arbiter_.exchange_over(over + silence, result.code == Errc::timed_out);
   drives_[ended.drive]->on_result(ended.exchange, result);
 }
 
@@ -186,13 +193,6 @@ void Bus::look_for_noise() {
                            "this number? Else cable, termination, baud and parity",
                            outstanding_->exchange.node, kNoisyTimeoutsReported));
   }
-}
-
-void Bus::link_up() {
-  if (up_) return;
-  up_ = true;
-  log_.write(LogLevel::info, log_source(), "link up");
-  for (BusDrive* drive : drives_) drive->on_link(true);
 }
 
 /// All in one turn: clients get their answers now, not after a timeout each.

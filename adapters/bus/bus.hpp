@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adapters/bus/arbiter.hpp"
+#include "adapters/bus/exchange_times.hpp"
 #include "adapters/bus/load_meter.hpp"
 #include "adapters/bus/wire.hpp"
 #include "gateway/core/log.hpp"
@@ -73,6 +74,7 @@ class Bus final : private WireEvents {
   [[nodiscard]] bool up() const { return up_; }
   [[nodiscard]] Instant now() const { return runtime_.now(); }
   [[nodiscard]] Statistics statistics() const;
+  [[nodiscard]] const ExchangeTimes& exchange_times() const { return statistics_.times; }
   [[nodiscard]] std::size_t queue_depth() const;
   /// Share of the last whole second in which an exchange was on the wire, in 0.1 %; on CAN, in which any frame was.
   [[nodiscard]] std::uint16_t load_permille() const;
@@ -89,6 +91,8 @@ class Bus final : private WireEvents {
   struct Outstanding {
     Exchange exchange;
     DriveSlot drive = 0;
+    Priority priority = Priority::poll;
+    Instant sent = kLongAgo;
     Instant deadline = kNever;
     std::uint32_t bad_frames = 0;  ///< of the wire, when it was sent
   };
@@ -105,7 +109,6 @@ class Bus final : private WireEvents {
   void grant(const Arbiter::Grant& grant);
   void look_for_noise();
   void end_exchange(const ExchangeResult& result, Duration silence);
-  void link_up();
   void link_down(const std::string& why);
   void soon();
   void turn_at(Instant due);
@@ -127,7 +130,10 @@ class Bus final : private WireEvents {
   std::optional<std::string> heard_down_;
   bool heard_up_ = false;
   std::deque<UnsolicitedEvent> heard_unsolicited_;
-  Statistics statistics_;  // requests, replies, timeouts
+  struct Counted : Statistics {
+    ExchangeTimes times{};
+  };
+  Counted statistics_;  // requests, replies, timeouts
   LoadMeter load_;
   BitMeter bits_;
   // Last, so that they go first: neither may call into a bus that is half gone.

@@ -197,6 +197,10 @@ CheckReport report(const config::LoadedConfig& loaded) {
     out += fmt::format("\n{}\n", dds_title(*config.dds));
     add_lines(out, dds_lines(*config.dds));
   }
+  if (config.web) {
+    out += fmt::format("\n{}\n", web_title(*config.web));
+    add_lines(out, web_lines(*config.web));
+  }
   out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
   for (const std::string& warning : timeout_warnings(loaded, budgets)) out += "warning: " + warning + "\n";
   for (const std::string& warning : lease_warnings(loaded, budgets)) out += "warning: " + warning + "\n";

@@ -35,6 +35,13 @@ namespace axisgate::check {
 [[nodiscard]] ReportLines dds_master_lines(const dds::DdsSettings& settings, const config::AxisConfig& axis,
                                            const config::BusBudget& budget);
 
+// --- The page --------------------------------------------------------------------------------------------------------
+
+/// "Web: http://127.0.0.1:8080/".
+[[nodiscard]] std::string web_title(const web::WebSettings& settings);
+/// Who may look and from where, and what it may take.
+[[nodiscard]] ReportLines web_lines(const web::WebSettings& settings);
+
 // --- An axis ---------------------------------------------------------------------------------------------------------
 
 /// What its `limits` are in rpm and turns, and which are missing.

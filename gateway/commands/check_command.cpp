@@ -10,8 +10,9 @@
 #include "gateway/check/check.hpp"
 #include "gateway/commands/common/config_faults.hpp"
 #include "gateway/process/descriptor_needs.hpp"
-#include "gateway/upstream/dds_host/program.hpp"
+#include "gateway/upstream/dds_host/dds_program.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
+#include "gateway/upstream/web_host/web_program.hpp"
 
 namespace axisgate::commands {
 
@@ -33,6 +34,15 @@ void warn_of_lines_with_two_names(const config::Config& config) {
   }
 }
 
+/// The program is there, or what will be missing.
+void say_where(const host::HostedProgram& program, std::string_view missing, std::string_view does) {
+  const host::FoundProgram found = host::find_program(program);
+  if (found.path.empty())
+    fmt::print("warning: there will be no {}, {} is not installed: {}\n", missing, program.name, found.why_not);
+  else
+    fmt::print("{}, which {}: {}\n", program.name, does, found.path);
+}
+
 }  // namespace
 
 int run(const CheckOptions& options) {
@@ -47,13 +57,8 @@ int run(const CheckOptions& options) {
   // The limit belongs to a process, not to the file: a service may have another.
   if (descriptors.limited()) fmt::print("warning: started from here, {}\n", modbus_tcp::text(descriptors));
   warn_of_lines_with_two_names(loaded.config);
-  if (loaded.config.dds) {
-    const dds::Program program = dds::find_program();
-    if (program.path.empty())
-      fmt::print("warning: there will be no DDS topics, axisgate-dds is not installed: {}\n", program.why_not);
-    else
-      fmt::print("axisgate-dds, which publishes the topics: {}\n", program.path);
-  }
+  if (loaded.config.dds) say_where(dds::kProgram, "DDS topics", "publishes the topics");
+  if (loaded.config.web) say_where(web::kProgram, "page", "serves the page");
   if (!report.overloaded) return 0;
   std::fflush(stdout);
   fmt::print(stderr, "{}: a bus is planned over 100 %, see OVERLOADED above\n", options.config);

@@ -19,6 +19,7 @@
 #include "gateway/commands/common/end_signals.hpp"
 #include "gateway/compose/gateway.hpp"
 #include "gateway/compose/start_lines.hpp"
+#include "gateway/compose/web_facts.hpp"
 #include "gateway/config/config_loader.hpp"
 #include "gateway/process/control_socket.hpp"
 #include "gateway/process/descriptor_needs.hpp"
@@ -32,9 +33,12 @@
 #include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 #include "gateway/upstream/modbus_tcp/server/server.hpp"
+#include "gateway/upstream/web_host/web_server.hpp"
 
 namespace axisgate::commands {
 namespace {
+
+using Served = compose::Gateway::Served;
 
 /// When all drives are done, what their clients are told still has to leave this process.
 constexpr Duration kLastAnswers = std::chrono::milliseconds(50);
@@ -68,6 +72,17 @@ std::string status_of(const ProcessImage& image) {
   return fmt::format("{} axes on {} buses", image.axes().size(), image.buses.size());
 }
 
+/// Another one for each start, and a greater one where the time of day goes on.
+web::Boot this_boot(Instant now) {
+  const auto of_day = std::chrono::system_clock::now().time_since_epoch();
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(of_day).count();
+  return {AXISGATE_VERSION, static_cast<std::uint64_t>(ms), now};
+}
+
+web::ProgramStatistics statistics_of(const host::Keeper& keeper) {
+  return {std::string(keeper.program().name), keeper.ready(), keeper.restarts()};
+}
+
 int serve(config::LoadedConfig loaded, const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the log may go; the motors' gateway does not
   Log log =
@@ -84,21 +99,37 @@ int serve(config::LoadedConfig loaded, const RunOptions& options) {
   });
   log_looks->expires_at(runtime.now() + kLogLooks);
   EndSignals signals(io, log);
-  std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how axisgate-dds ends
+  std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would hide how our programs end
   const modbus_tcp::DescriptorPlan descriptors = modbus_tcp::take_descriptors(process::descriptor_needs(loaded.config));
   modbus_tcp::ClientRegistry clients;
   compose::Gateway gateway(loaded.config, loaded.models, runtime, log, process::device_wires(io, runtime, log));
   modbus_tcp::Server server(io, runtime, loaded.config.modbus_tcp, gateway.image(), gateway, clients, log,
                             {[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
-                             [&](bool down) { gateway.report_listener_down(down); }});
+                             [&](bool down) { gateway.report_address_missing(Served::modbus_tcp, down); }});
   std::optional<dds::DdsServer> dds;
   if (loaded.config.dds) {
     dds.emplace(io, runtime, *loaded.config.dds, gateway.image(), gateway.events(), gateway, log,
-                dds::DdsReports{[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
-                                [&](bool down) { gateway.report_dds_down(down); },
-                                [&](bool taken) { gateway.report_name_taken(taken); },
-                                [&](bool missing) { gateway.report_dds_address_missing(missing); }});
+                dds::DdsReports{{[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
+                                 [&](bool down) { gateway.report_dds_down(down); },
+                                 [&](bool missing) { gateway.report_address_missing(Served::dds, missing); }},
+                                [&](bool taken) { gateway.report_name_taken(taken); }});
   }
+  Duration worst_turn{};
+  std::optional<web::WebServer> web;
+  const auto figures = [&] {
+    const auto& counters = server.counters();
+    web::ProcessFigures out{std::exchange(worst_turn, Duration{}),
+                            counters.open,
+                            static_cast<std::uint32_t>(counters.refused_not_allowed + counters.refused_full),
+                            {}};
+    if (dds) out.programs.push_back(statistics_of(dds->keeper()));
+    out.programs.push_back(statistics_of(web->keeper()));
+    return out;
+  };
+  web.emplace(io, runtime, this_boot(runtime.now()), gateway.image(), gateway.events(), figures, log,
+              host::KeeperReports{[&](EventKind kind, std::string text) { gateway.report(kind, std::move(text)); },
+                                  {},
+                                  [&](bool missing) { gateway.report_address_missing(Served::web, missing); }});
   try {
     server.start(descriptors);
   } catch (const std::exception& error) {
@@ -108,12 +139,16 @@ int serve(config::LoadedConfig loaded, const RunOptions& options) {
   if (descriptors.limited()) gateway.report(EventKind::warning, modbus_tcp::text(descriptors));
   gateway.start();
   if (dds) dds->start();
+  web->run(loaded.config.web, compose::web_facts(loaded));
   process::FileWatch file_watch(io, runtime, config::watched_files(loaded.config),
                                 [&](const std::string& file) { gateway.report_file_changed(file); });
-  process::LoopWatch watch(runtime, [&](Duration late) { gateway.report_loop_delay(late); });
+  process::LoopWatch watch(runtime, [&](Duration late) {
+    worst_turn = std::max(worst_turn, late);
+    gateway.report_loop_delay(late);
+  });
   process::Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });
   process::Reload reload(io, std::move(loaded.config), [&options] { return load(options); },
-                         {gateway, server, dds ? &*dds : nullptr, file_watch, log});
+                         {gateway, server, dds ? &*dds : nullptr, *web, file_watch, log});
   const auto begin_reload = [&](const process::Reload::Done& done) {
     service.reloading();
     reload.begin([&, done](const process::ReloadResult& result) {
@@ -138,6 +173,7 @@ int serve(config::LoadedConfig loaded, const RunOptions& options) {
   service.ready(status_of(gateway.image()));
   io.run();
   if (dds) dds->stop();
+  web->stop();
   log.tell_left_out();
   return 0;
 }

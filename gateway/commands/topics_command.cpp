@@ -11,7 +11,7 @@
 
 #include "gateway/commands/common/config_faults.hpp"
 #include "gateway/config/config_loader.hpp"
-#include "gateway/upstream/dds_host/program.hpp"
+#include "gateway/upstream/dds_host/dds_program.hpp"
 
 namespace axisgate::commands {
 namespace {
@@ -48,7 +48,7 @@ std::vector<std::string> arguments_of(dds::DdsSettings settings, const TopicsOpt
 int run(const TopicsOptions& options) {
   const auto settings = settings_of(options);
   if (const int* const code = std::get_if<int>(&settings)) return *code;
-  const dds::Program program = dds::find_program();
+  const host::FoundProgram program = host::find_program(dds::kProgram);
   if (program.path.empty()) {
     fmt::print(stderr, "axisgate-dds is not installed: {}\n", program.why_not);
     return 1;

@@ -62,6 +62,7 @@ void BusLine::show(BusImage& shown) const {
   shown.superseded = s.superseded;
   shown.reconnects = s.reconnects;
   shown.echoes = s.echoes;
+  shown.times = bus_->exchange_times().by_class();
 }
 
 }  // namespace axisgate::compose

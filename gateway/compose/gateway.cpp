@@ -240,7 +240,7 @@ std::uint16_t Gateway::gateway_alarms() const {
   set(GatewayAlarm::event_loop_slow, slow);
   set(GatewayAlarm::dds_process_down, dds_down_);
   set(GatewayAlarm::name_taken, name_taken_);
-  set(GatewayAlarm::listener_down, listener_down_ || dds_address_missing_);
+  set(GatewayAlarm::listener_down, missing_.any());
   set(GatewayAlarm::configuration_changed, file_changed_);
   return out;
 }

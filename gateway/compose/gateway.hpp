@@ -5,6 +5,7 @@
 // at start.
 #pragma once
 
+#include <bitset>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -73,9 +74,9 @@ class Gateway final : public CommandPort {
   void report_dds_down(bool down) { dds_down_ = down; }
   /// Another gateway of the DDS domain has our name: gateway alarm "name taken".
   void report_name_taken(bool taken) { name_taken_ = taken; }
-  /// An address that clients shall reach is not there, of Modbus-TCP or of DDS: gateway alarm "listener down".
-  void report_listener_down(bool down) { listener_down_ = down; }
-  void report_dds_address_missing(bool missing) { dds_address_missing_ = missing; }
+  /// An address that is to be served is not there: gateway alarm "listener down".
+  enum class Served : std::uint8_t { modbus_tcp, dds, web };
+  void report_address_missing(Served by, bool missing) { missing_.set(static_cast<std::size_t>(by), missing); }
   /// A file that the gateway was started with is not what it runs with any more; empty: all are again.
   void report_file_changed(const std::string& file);
   /// An event of the gateway itself, and so a line of the log. `asked_for`: by a person, as a reload is.
@@ -114,8 +115,7 @@ class Gateway final : public CommandPort {
   std::unique_ptr<Timer> bus_release_ended_;  ///< takes bus_release_ away in a turn of its own
   bool dds_down_ = false;
   bool name_taken_ = false;
-  bool listener_down_ = false;
-  bool dds_address_missing_ = false;
+  std::bitset<3> missing_;  ///< by Served: an address
   bool file_changed_ = false;
 };
 

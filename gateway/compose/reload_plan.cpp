@@ -109,6 +109,9 @@ ReloadPlan plan_reload(const config::Config& running, const config::Config& want
                     "restart the gateway when its axes are disabled, or put the section back",
                     fmt::join(keys, ", ")));
   }
+  // Nobody's motor depends on a page.
+  if (running.web != wanted.web)
+    plan.changes.push_back(fmt::format("web: {}", !running.web ? "added" : !wanted.web ? "removed" : "changed"));
   return plan;
 }
 

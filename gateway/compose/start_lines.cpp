@@ -2,6 +2,7 @@
 #include "gateway/compose/start_lines.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "gateway/check/check_lines.hpp"
 #include "gateway/config/adapter_names.hpp"
@@ -17,12 +18,6 @@ std::size_t axes_of(const config::BusConfig& bus) {
   std::size_t axes = 0;
   for (const config::DriveConfig& drive : bus.drives) axes += drive.axes.size();
   return axes;
-}
-
-std::string wire_text(const config::BusConfig& bus) {
-  if (config::adapter::on_can(bus.adapter)) return fmt::format("{}, {} kbit/s", bus.device, bus.bitrate / 1000);
-  const char parity = bus.parity == "even" ? 'E' : bus.parity == "odd" ? 'O' : 'N';
-  return fmt::format("{}, {} baud 8{}1", bus.device, bus.baud, parity);
 }
 
 std::string bus_text(const config::BusConfig& bus) {
@@ -81,7 +76,19 @@ std::string dds_line(const dds::DdsSettings& settings) {
                                   : ", no commands are taken");
 }
 
+std::string web_line(const web::WebSettings& settings) {
+  return fmt::format("page at http://{}/, may be looked at from {}{}", settings.listen,
+                     settings.allow.empty() ? "nowhere" : fmt::format("{}", fmt::join(settings.allow, ", ")),
+                     settings.insecure ? ", without encryption and passwords" : "");
+}
+
 }  // namespace
+
+std::string wire_text(const config::BusConfig& bus) {
+  if (config::adapter::on_can(bus.adapter)) return fmt::format("{}, {} kbit/s", bus.device, bus.bitrate / 1000);
+  const char parity = bus.parity == "even" ? 'E' : bus.parity == "odd" ? 'O' : 'N';
+  return fmt::format("{}, {} baud 8{}1", bus.device, bus.baud, parity);
+}
 
 std::vector<StartLine> start_lines(const config::LoadedConfig& loaded, std::string_view version) {
   const config::Config& config = loaded.config;
@@ -101,6 +108,7 @@ std::vector<StartLine> start_lines(const config::LoadedConfig& loaded, std::stri
   for (const modbus_tcp::ListenerSettings& listener : config.modbus_tcp)
     lines.push_back({"modbus", listener_text(listener)});
   if (config.dds) lines.push_back({"dds", dds_line(*config.dds)});
+  if (config.web) lines.push_back({"web", web_line(*config.web)});
   return lines;
 }
 

@@ -17,6 +17,8 @@ struct StartLine {
   std::string text;
 };
 
+/// "/dev/ttyUSB0, 38400 baud 8N1", "can0, 500 kbit/s".
+[[nodiscard]] std::string wire_text(const config::BusConfig& bus);
 [[nodiscard]] std::vector<StartLine> start_lines(const config::LoadedConfig& loaded, std::string_view version);
 
 }  // namespace axisgate::compose

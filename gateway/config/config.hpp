@@ -17,6 +17,7 @@
 #include "gateway/profile/resolve/profile_resolve.hpp"
 #include "gateway/upstream/dds/dds_settings.hpp"
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
+#include "gateway/upstream/web/web_settings.hpp"
 
 namespace axisgate::config {
 
@@ -71,6 +72,7 @@ struct Config {
   std::vector<modbus_tcp::ListenerSettings> modbus_tcp;
   std::optional<dds::DdsSettings> dds;
   std::vector<profile::FileRead> read_by_dds{};  ///< what axisgate-dds reads when it starts, but the private key
+  std::optional<web::WebSettings> web{};
   std::vector<BusConfig> buses;
 };
 

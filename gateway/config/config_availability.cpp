@@ -18,10 +18,6 @@ void warn_at_first_use(const JsonNode& root, std::string_view key, ConfigFaults&
 
 }  // namespace
 
-void refuse_unavailable(const JsonNode& root, ConfigFaults& faults) {
-  if (root.has("http")) faults.add(root.pointer("http"), "http is not available in this version: remove the key");
-}
-
 void warn_without_effect(const JsonNode& root, ConfigFaults& faults) {
   if (root.has("dds")) return;
   for (const std::string_view key : {"dds_unit", "metres_per_rev"}) warn_at_first_use(root, key, faults);

@@ -49,11 +49,11 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
   const JsonNode root(document, "");
   loaded.config.file = file;
   if (root.is_object()) {
-    refuse_unavailable(root, faults);
     loaded.config.modbus_tcp = read_listeners(root, faults);
     loaded.config.buses = read_buses(root, faults);
     loaded.config.dds = read_dds(root, loaded.config.buses, faults);
     if (loaded.config.dds) loaded.config.read_by_dds = read_files_of_dds(*loaded.config.dds);
+    loaded.config.web = read_web(root, loaded.config, faults);
     check_unique(loaded.config, faults);
     warn_without_effect(root, faults);
     warn_about_unit_ids(loaded.config, faults);

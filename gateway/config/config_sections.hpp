@@ -17,9 +17,6 @@ namespace axisgate::config {
 
 using profile::JsonNode;
 
-/// What the schema knows and this version has not: refused by name, never ignored.
-void refuse_unavailable(const JsonNode& root, ConfigFaults& faults);
-
 /// none: no role has this name.
 [[nodiscard]] Role role_named(std::string_view name);
 [[nodiscard]] std::vector<modbus_tcp::ListenerSettings> read_listeners(const JsonNode& root, ConfigFaults& faults);
@@ -28,6 +25,9 @@ void refuse_unavailable(const JsonNode& root, ConfigFaults& faults);
 [[nodiscard]] AxisConfig read_axis(const JsonNode& node, ConfigFaults& faults);
 /// The section "dds", with the units of all axes.
 [[nodiscard]] std::optional<dds::DdsSettings> read_dds(const JsonNode& root, const std::vector<BusConfig>& buses,
+                                                       ConfigFaults& faults);
+/// The section "web". `config`: its listeners and buses, which were read before.
+[[nodiscard]] std::optional<web::WebSettings> read_web(const JsonNode& root, const Config& config,
                                                        ConfigFaults& faults);
 /// What axisgate-dds reads when it starts, but the private key.
 [[nodiscard]] std::vector<profile::FileRead> read_files_of_dds(const dds::DdsSettings& settings);

@@ -91,16 +91,20 @@ std::string number_text(const Word& word) {
   return word.kind == error_code ? fmt::format("0x{:04X}", word.number) : fmt::format("{}", word.number);
 }
 
+std::string remedy_for(const Word& word, unsigned axis) {
+  std::string remedy(word.remedy);
+  constexpr std::string_view kAxis = "CONFIG AXIS";
+  if (const std::size_t at = remedy.find(kAxis); at != std::string::npos)
+    remedy.replace(at, kAxis.size(), "CONFIG " + std::to_string(axis));
+  return remedy;
+}
+
 std::string against_enable(std::uint32_t axis_alarms, unsigned axis) {
   std::string out;
   for (const Word& word : words()) {
     if (word.kind != axis_alarm || !word.refuses_enable || (axis_alarms >> word.number & 1U) == 0) continue;
-    std::string remedy(word.remedy);
-    constexpr std::string_view kAxis = "CONFIG AXIS";
-    if (const std::size_t at = remedy.find(kAxis); at != std::string::npos)
-      remedy.replace(at, kAxis.size(), "CONFIG " + std::to_string(axis));
     out += (out.empty() ? "" : "; ") + ("alarm " + std::string(word.name)) + ": " + std::string(word.meaning) + "; " +
-           remedy;
+           remedy_for(word, axis);
   }
   return out;
 }

@@ -51,6 +51,8 @@ struct Word {
 [[nodiscard]] std::string_view name_of(WordKind kind, std::uint32_t number);
 /// Names of the bits that are set, with ", " between; a bit without a name as "bit 17"; empty: none is set.
 [[nodiscard]] std::string names_of_bits(WordKind kind, std::uint32_t bits);
+/// What helps, where the word is met at this axis: "axisgate commission CONFIG 3 shows and changes it".
+[[nodiscard]] std::string remedy_for(const Word& word, unsigned axis);
 /// What of these bits of register 34 stands against an enable, and what helps: "alarm local_control: the drive obeys
 /// its own inputs or keypad and ignores the bus; axisgate commission CONFIG 3 shows and changes it". Empty: nothing.
 [[nodiscard]] std::string against_enable(std::uint32_t axis_alarms, unsigned axis);

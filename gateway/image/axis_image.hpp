@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -92,12 +93,15 @@ struct Sample {
   Instant at = kLongAgo;   ///< when it was last confirmed
 };
 
-/// The result of the last write batch of an axis, for registers 25, 26 and 30.
+/// The result of the last write batch of an axis, for registers 25, 26 and 30; of the axis's own, whose it was as well.
 struct LatestResult {
   CommandResult result = CommandResult::none;
   std::uint32_t detail = 0;
   std::uint16_t command_id = 0;
-  std::uint64_t stop = 0;  ///< BatchResult::stop
+  std::uint64_t stop = 0;                  ///< BatchResult::stop
+  std::shared_ptr<const ClientLife> by{};  ///< who asked; none: the gateway itself
+  std::string_view what{};                 ///< subject_of() what was asked
+  Instant at = kLongAgo;                   ///< since when it is so
   friend bool operator==(const LatestResult&, const LatestResult&) = default;
 };
 

@@ -47,6 +47,16 @@ std::optional<Quantity> target_of(Command command) {
   }
 }
 
+std::string_view subject_of(const WriteBatch& batch) {
+  if (batch.command != Command::none) return text(batch.command);
+  if (batch.object) return "object";
+  if (batch.controlword) return "controlword";
+  if (batch.mode) return row(Quantity::mode).name;
+  if (!batch.setpoints.empty()) return row(batch.setpoints.back().quantity).name;
+  if (batch.set_position_value) return "set_position_value";
+  return batch.jog_velocity || batch.jog_again ? "jog_velocity" : std::string_view();
+}
+
 bool asks_nothing(const WriteBatch& batch) {
   return batch.setpoints.empty() && !batch.mode && !batch.controlword && batch.command == Command::none &&
          !batch.set_position_value && !batch.jog_velocity && !batch.object;

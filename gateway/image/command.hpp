@@ -139,6 +139,10 @@ struct WriteBatch {
 /// client's result registers as they are.
 [[nodiscard]] bool asks_nothing(const WriteBatch& batch);
 
+/// What the write batch is about, in one name: its command, else what of it comes last ("controlword", "mode",
+/// "profile_velocity", "object"); empty: it asks for nothing.
+[[nodiscard]] std::string_view subject_of(const WriteBatch& batch);
+
 /// The stop that a lease's action is; none: nothing is done.
 [[nodiscard]] constexpr Command command_of(LeaseAction action) {
   switch (action) {

@@ -38,6 +38,11 @@ enum class GatewayAlarm : std::uint8_t {
   listener_down = 14,  ///< an address that is to be served is none of this computer's yet
 };
 
+/// Classes of exchanges, most urgent first: stop, fault cause, command, interactive, setup, poll.
+inline constexpr std::size_t kExchangeClasses = 6;
+/// Bucket i counts exchanges below 0.1 ms * 2^i, the last one all longer ones.
+inline constexpr std::size_t kTimeBuckets = 16;
+
 /// Registers 50000 + 100 * b; refreshed by the gateway before a request is answered.
 struct BusImage {
   std::string name;
@@ -56,6 +61,8 @@ struct BusImage {
   std::uint32_t superseded = 0;
   std::uint32_t reconnects = 0;
   std::uint32_t echoes = 0;
+  /// In no register: how long the exchanges of each class took.
+  std::array<std::array<std::uint32_t, kTimeBuckets>, kExchangeClasses> times{};
 };
 
 struct GatewayImage {

@@ -9,6 +9,7 @@
 #include <exception>
 #include <utility>
 
+#include "gateway/compose/web_facts.hpp"
 #include "gateway/process/descriptor_needs.hpp"
 #include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
 
@@ -52,11 +53,13 @@ void Reload::change(config::LoadedConfig wanted) {
   }
   for (const std::string& warning : wanted.warnings) with_.gateway.report(EventKind::warning, warning, true);
   std::vector<compose::StartLine> start = compose::start_lines(wanted, AXISGATE_VERSION);
+  web::WebFacts facts = compose::web_facts(wanted);
   config::Config config = wanted.config;
   with_.gateway.reload(
       plan, std::move(wanted.config), std::move(wanted.models), [this, plan] { return clients_in_the_way(plan); },
-      [this, plan, config = std::move(config), start = std::move(start)](std::vector<std::string> not_done) mutable {
-        if (not_done.empty()) return commit(plan, std::move(config), start);
+      [this, plan, config = std::move(config), start = std::move(start),
+       facts = std::move(facts)](std::vector<std::string> not_done) mutable {
+        if (not_done.empty()) return commit(plan, std::move(config), start, std::move(facts));
         with_.server.give_up();
         refuse(std::move(not_done));
       });
@@ -95,9 +98,10 @@ std::vector<std::string> Reload::clients_in_the_way(const compose::ReloadPlan& p
 }
 
 void Reload::commit(const compose::ReloadPlan& plan, config::Config wanted,
-                    const std::vector<compose::StartLine>& start) {
+                    const std::vector<compose::StartLine>& start, web::WebFacts facts) {
   with_.server.commit(modbus_tcp::take_descriptors(descriptor_needs(wanted)));
   if (with_.dds != nullptr && wanted.dds) with_.dds->take_axes(wanted.dds->units);
+  with_.web.run(wanted.web, std::move(facts));
   wanted.read_by_dds = running_.read_by_dds;  // axisgate-dds has not read them anew
   with_.files.take(config::watched_files(wanted));
   running_ = std::move(wanted);

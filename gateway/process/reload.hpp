@@ -18,6 +18,7 @@
 #include "gateway/process/file_watch.hpp"
 #include "gateway/upstream/dds_host/dds_server.hpp"
 #include "gateway/upstream/modbus_tcp/server/server.hpp"
+#include "gateway/upstream/web_host/web_server.hpp"
 
 namespace axisgate::process {
 
@@ -34,6 +35,7 @@ class Reload {
     compose::Gateway& gateway;
     modbus_tcp::Server& server;
     dds::DdsServer* dds;
+    web::WebServer& web;
     FileWatch& files;
     const Log& log;
   };
@@ -51,7 +53,8 @@ class Reload {
   void on_loaded(config::LoadResult loaded);
   void change(config::LoadedConfig wanted);
   [[nodiscard]] std::vector<std::string> clients_in_the_way(const compose::ReloadPlan& plan) const;
-  void commit(const compose::ReloadPlan& plan, config::Config wanted, const std::vector<compose::StartLine>& start);
+  void commit(const compose::ReloadPlan& plan, config::Config wanted, const std::vector<compose::StartLine>& start,
+              web::WebFacts facts);
   void refuse(std::vector<std::string> why_not);
   void end(ReloadResult result);
 

@@ -50,11 +50,11 @@ class Demo(UndisturbedTest):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.port = PORTS.free()
+        self.port, self.page = PORTS.free(), PORTS.free()
         self.environment = {**os.environ, "TMPDIR": self.folder.name, "TERM": "xterm"}
 
     def command(self, *options):
-        return [f"{SOURCE}/deploy/demo", "--built", BUILD, "--port", str(self.port), *options]
+        return [f"{SOURCE}/deploy/demo", "--built", BUILD, "--port", str(self.port), "--page", str(self.page), *options]
 
     def start_on_terminal(self, *options):
         """Its pid and the other end of its terminal."""
@@ -93,6 +93,7 @@ class Demo(UndisturbedTest):
                                text=True, timeout=LONGEST, check=False)
         self.assertEqual(ended.returncode, 0, ended.stderr + ended.stdout)
         self.assertGreaterEqual(ended.stdout.count("axes online 5 of 5"), 3)
+        self.assertIn(f"http://127.0.0.1:{self.page}/", ended.stdout.partition("axes online")[0])
         for axis in (1, 4):
             positions = set(re.findall(rf"^ +{axis} .*?profile position +(-?\d+)", ended.stdout, re.M))
             self.assertGreaterEqual(len(positions), 2, f"axis {axis} does not move:\n" + ended.stdout)

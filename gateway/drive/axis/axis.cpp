@@ -136,7 +136,7 @@ BatchResult Axis::refuse(const WriteBatch& batch, Errc code, bool shown) {
   name_limit(core_, batch, result);
   const Outcome& outcome = result.outcome;
   if (shown && !batch.object && command_result(code) != CommandResult::none)
-    image_.latest = {command_result(code), outcome.detail, batch.command_id};
+    shown_.result(batch, command_result(code), outcome.detail);
   events_.refused(batch, result);
   return result;
 }
@@ -216,7 +216,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
     return sp.quantity == Quantity::target_velocity || sp.quantity == Quantity::target_torque;
   });
   if (starts || drives) guard_.commanded(batch.client, batch.life);
-  if (shown && !asked.object) image_.latest = {CommandResult::pending, 0, batch.command_id};
+  if (shown && !asked.object) shown_.result(batch, CommandResult::pending);
   if (starts) core_.motion.mask_target_reached();
   publish();
   return std::nullopt;
@@ -252,7 +252,7 @@ BatchResult Axis::on_ended(Pending& pending) {
     if (!sequence.begun()) core_.asked.withdraw(batch);
     if (resets_fault(batch)) shown_.reset_failed();
   }
-  if (!pending.by_mailbox) image_.latest = {command_result(code), result.outcome.detail, batch.command_id, result.stop};
+  if (!pending.by_mailbox) shown_.result(batch, command_result(code), result.outcome.detail, result.stop);
   events_.ended(pending, result.outcome);
   if (code == Errc::timed_out && batch.command == Command::enable && sequence.commanded()) {
     // Its acknowledgement was lost, and its client was told that nobody knows. A set-point that was lost beside it, on

@@ -44,6 +44,10 @@ void AxisPublisher::publish(const Jog& jog, bool zero_may_move) {
   if (changed) tell_changes(before);
 }
 
+void AxisPublisher::result(const WriteBatch& batch, CommandResult result, std::uint32_t detail, std::uint64_t stop) {
+  image_.latest = {result, detail, batch.command_id, stop, batch.life, subject_of(batch), core_.turn.now};
+}
+
 void AxisPublisher::tell_link(const AxisImage& before) {
   if (before.link_state != image_.link_state)
     host_.event(image_.number, EventKind::link, static_cast<std::uint32_t>(image_.link_state),

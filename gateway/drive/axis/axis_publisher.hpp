@@ -21,6 +21,9 @@ class AxisPublisher {
   /// Brings the image up to date. `zero_may_move`: a homing or set_position is asked for or under way.
   void publish(const Jog& jog, bool zero_may_move);
 
+  /// The latest result. `stop`: its number, of a stop.
+  void result(const WriteBatch& batch, CommandResult result, std::uint32_t detail = 0, std::uint64_t stop = 0);
+
   /// The axis has shown a fault until now; a client asks for its reset.
   void reset_asked(const std::string& by);
   /// What was asked for has failed.

@@ -141,7 +141,7 @@ std::optional<BatchResult> Axis::taken_over(const WriteBatch& batch, BatchCallba
 
 BatchResult Axis::nothing_left(const WriteBatch& batch, bool shown) {
   settle();
-  if (shown) image_.latest = {command_result(Errc::ok), 0, batch.command_id};
+  if (shown) shown_.result(batch, command_result(Errc::ok));
   publish();
   return {};
 }

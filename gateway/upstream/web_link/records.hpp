@@ -19,6 +19,8 @@ namespace axisgate::web {
 /// First byte of each packet. Both ends are installed together: another version is another installation.
 inline constexpr std::uint8_t kLinkVersion = 1;
 using link::kMaxPacket;
+using link::kMillisecond;
+using link::kSecond;
 using link::SteadyNs;
 
 inline constexpr std::size_t kMaxName = 64;
@@ -55,7 +57,8 @@ struct LimitRow {
   friend bool operator==(const LimitRow&, const LimitRow&) = default;
 };
 
-/// What is fixed of an axis while the configuration is as it is.
+/// What is fixed of an axis while the configuration is as it is. Sent again by itself where its drive has come up with
+/// other limits, or with less.
 struct AxisInfoRecord {
   std::uint16_t axis = 0;
   std::string name;
@@ -132,7 +135,7 @@ struct AxisSample {
   friend bool operator==(const AxisSample&, const AxisSample&) = default;
 };
 
-/// One packet each `sample_ms`, of the axes of which something is new; each axis at least once a second.
+/// One packet each `sample_ms`, of the axes of which something is new; each axis four times a second at least.
 struct SamplesRecord {
   SteadyNs at = 0;
   std::uint32_t gaps = 0;  ///< axes that had no room in a packet since the gateway's start: shown as a gap

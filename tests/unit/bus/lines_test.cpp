@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adapters/bus/backoff.hpp"
+#include "adapters/bus/exchange_times.hpp"
 #include "adapters/bus/line_watch.hpp"
 #include "adapters/bus/load_meter.hpp"
 #include "adapters/bus/noise_watch.hpp"
@@ -151,6 +152,25 @@ TEST(Backoff, never_pauses_longer_than_a_minute) {
   Backoff backoff(1s);
   for (int i = 0; i < 20; ++i) (void)backoff.next();
   EXPECT_EQ(backoff.next(), 60s);
+}
+
+TEST(ExchangeTimes, counts_each_exchange_in_the_bucket_of_its_class_that_doubles) {
+  ExchangeTimes times;
+  times.add(Priority::stop, 0us);
+  times.add(Priority::stop, 99us);
+  times.add(Priority::stop, 100us);
+  times.add(Priority::stop, 199us);
+  times.add(Priority::stop, 200us);
+  times.add(Priority::poll, 1638399us);
+  times.add(Priority::poll, 1638400us);
+  times.add(Priority::poll, 1h);
+  const auto& stops = times.by_class()[static_cast<std::size_t>(Priority::stop)];
+  EXPECT_EQ(stops[0], 2U);
+  EXPECT_EQ(stops[1], 2U);
+  EXPECT_EQ(stops[2], 1U);
+  const auto& polls = times.by_class()[static_cast<std::size_t>(Priority::poll)];
+  EXPECT_EQ(polls[14], 1U);
+  EXPECT_EQ(polls[15], 2U);
 }
 
 TEST(LoadMeter, tells_the_share_of_the_last_whole_second) {

@@ -29,6 +29,8 @@ const char* const kRunning = R"({
     {"listen": "127.0.0.1:1503"}],
   "dds": {"interfaces": ["lo"], "commands": true, "qos_file": "/etc/passwd",
           "roles": [{"certificate": "/etc/passwd", "role": "operator"}]},
+  "web": {"allow": [{"from": "127.0.0.1"}], "captures": {},
+          "triggers": [{"name": "hard", "axis": 5, "quantity": "current_a", "is": "above", "value": 2}]},
   "buses": [
     {"name": "serial", "adapter": "kinco-serial", "device": "/dev/ttyUSB0", "drives": [
       {"profile": "kinco-jd", "node": 1, "constants": {"peak_current_a": 27.5, "rated_current_a": 4.5}, "axes": [{"axis": 1, "lease": {}}]}]},
@@ -92,7 +94,28 @@ const Row kRows[] = {
     {"/dds/start_deadline_ms", "/dds/start_deadline_ms", "600", "refused: start_deadline_ms"},
     {"/dds/reply_deadline_ms", "/dds/reply_deadline_ms", "950", "refused: reply_deadline_ms"},
     {"/dds/memory_limit_mb", "/dds/memory_limit_mb", "600", "refused: memory_limit_mb"},
-    {"/http/listen", "/http", R"({"listen": "127.0.0.1:8080"})", "wrong"},
+    {"/web/listen", "/web/listen", R"("127.0.0.1:8081")", "web: changed"},
+    {"/web/hosts", "/web/hosts", R"(["press.example"])", "web: changed"},
+    {"/web/insecure", "/web/insecure", "true", "web: changed"},
+    {"/web/allow/*/from", "/web/allow/0/from", R"("127.0.0.0/8")", "web: changed"},
+    {"/web/sample_ms", "/web/sample_ms", "20", "web: changed"},
+    {"/web/history_mb", "/web/history_mb", "4", "web: changed"},
+    {"/web/max_connections", "/web/max_connections", "10", "web: changed"},
+    {"/web/max_streams", "/web/max_streams", "10", "web: changed"},
+    {"/web/memory_limit_mb", "/web/memory_limit_mb", "64", "web: changed"},
+    {"/web/captures/before_s", "/web/captures/before_s", "3.5", "web: changed"},
+    {"/web/captures/after_s", "/web/captures/after_s", "0", "web: changed"},
+    {"/web/captures/keep", "/web/captures/keep", "200", "web: changed"},
+    {"/web/captures/folder", "/web/captures/folder", R"("/var/lib/axisgate")", "web: changed"},
+    {"/web/triggers/*/name", "/web/triggers/0/name", R"("soft")", "web: changed"},
+    {"/web/triggers/*/axis", "/web/triggers/0/axis", "3", "web: changed"},
+    {"/web/triggers/*/quantity", "/web/triggers/0/quantity", R"("velocity_rpm")", "web: changed"},
+    {"/web/triggers/*/is", "/web/triggers/0/is", R"("below")", "web: changed"},
+    {"/web/triggers/*/value", "/web/triggers/0/value", "2.5", "web: changed"},
+    {"/web/triggers/*/min", "/web/triggers/0",
+     R"({"name": "hard", "axis": 5, "quantity": "current_a", "is": "outside", "min": 1, "max": 2})", "web: changed"},
+    {"/web/triggers/*/max", "/web/triggers/0",
+     R"({"name": "hard", "axis": 5, "quantity": "current_a", "is": "outside", "min": 1, "max": 3})", "web: changed"},
     {"/buses/*/name", "/buses/0/name", R"("serial-2")", "bus serial-2: added, bus serial: removed"},
     {"/buses/*/adapter", "/buses/0/adapter", R"("modbus-rtu")", "bus serial: changed"},
     {"/buses/*/device", "/buses/0/device", R"("/dev/ttyUSB9")", "bus serial: changed"},
@@ -235,8 +258,7 @@ TEST_F(ReloadPlanTest, NoKeyOfTheSchemaIsWithoutARow) {
   ASSERT_GT(keys.size(), 60U);
   for (const Row& row : kRows) keys.erase(row.key);
   // Lists and tables whose own keys have rows.
-  for (const char* const outer :
-       {"/buses", "/modbus_tcp", "/dds", "/http", "/buses/*/drives", "/buses/*/drives/*/axes"})
+  for (const char* const outer : {"/buses", "/modbus_tcp", "/dds", "/web", "/buses/*/drives", "/buses/*/drives/*/axes"})
     keys.erase(outer);
   EXPECT_THAT(keys, IsEmpty());
 }
@@ -277,6 +299,13 @@ TEST_F(ReloadPlanTest, AnEditedProfileChangesItsBuses) {
   const ReloadPlan plan = plan_reload(before, after);
   EXPECT_THAT(plan.leaving_buses, ElementsAre(0));
   EXPECT_FALSE(before.buses[0].drives[0].profile_text.empty());
+}
+
+TEST_F(ReloadPlanTest, ThePageIsBegunAndEndedByIt) {
+  json without = running_;
+  without.erase("web");
+  EXPECT_EQ(does(good(running_), good(without)), "web: removed");
+  EXPECT_EQ(does(good(without), good(running_)), "web: added");
 }
 
 TEST_F(ReloadPlanTest, DdsIsNotBegunOrEndedByIt) {

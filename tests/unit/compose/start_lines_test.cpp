@@ -36,6 +36,13 @@ TEST(StartLines, OneForTheGatewayEachBusEachAxisAndEachListener) {
   EXPECT_EQ(lines[4], "modbus: listener 127.0.0.1:1502: a client is a connection, only this machine may command");
 }
 
+TEST(StartLines, ThePageIsNamedAsABrowserWantsIt) {
+  auto loaded = config::load_one_bus(R"("name": "line", "adapter": "modbus-rtu", "device": "/dev/ttyUSB0")",
+                                     R"({"profile": "id286pro", "node": 1, "axes": [{"axis": 1}]})");
+  loaded.config.web.emplace();
+  EXPECT_EQ(lines_of(loaded).back(), "web: page at http://127.0.0.1:8080/, may be looked at from 127.0.0.1/32");
+}
+
 TEST(StartLines, ASerialLineHasItsParityAndAKeyaItsMotors) {
   const auto serial = lines_of(config::load_one_bus(
       R"("name": "line", "adapter": "modbus-rtu", "device": "/dev/ttyUSB0", "baud": 115200, "parity": "even")",

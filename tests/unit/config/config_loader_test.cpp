@@ -265,7 +265,7 @@ TEST_F(ConfigLoader, NothingThatJsonCanSayEndsItByException) {
        R"({"buses": [{"adapter": "kinco-serial", "baud": 0, "timeout_ms": -1, "poll": 7, "drives": [[], {"axes": [{"axis": -1}]}]}]})",
        R"({"buses": [{"adapter": "kinco-serial", "baud": 99999999999999999999, "drives": [{"node": 1e99, "constants": {"x": null}}]}]})",
        R"({"modbus_tcp": [{"listen": 5, "allow": [{"from": 1}, null]}, 9], "buses": []})",
-       R"({"modbus_tcp": {"listen": "x"}, "dds": 1, "http": [], "buses": [{"drives": [{"axes": [{"axis": 1, "limits": {"position": ["a", 2]},
+       R"({"modbus_tcp": {"listen": "x"}, "dds": 1, "web": [], "buses": [{"drives": [{"axes": [{"axis": 1, "limits": {"position": ["a", 2]},
             "units_per_rev": {"numerator": 0}, "lease": {"on_expiry": 5}, "homing_method": 1e300}]}]}]})"}) {
     EXPECT_THAT(load_bad(wrong), Not(IsEmpty())) << wrong;
   }
