@@ -47,6 +47,7 @@ int axisgate_fuzz_hand_replies(const std::uint8_t* data, std::size_t size);
 int axisgate_fuzz_top_table(const std::uint8_t* data, std::size_t size);
 int axisgate_fuzz_can_errors(const std::uint8_t* data, std::size_t size);
 int axisgate_fuzz_dds_command_line(const std::uint8_t* data, std::size_t size);
+int axisgate_fuzz_web_requests(const std::uint8_t* data, std::size_t size);
 
 namespace axisgate::fuzz {
 
@@ -78,6 +79,7 @@ inline constexpr std::array kTargets{
     Target{"top_table", axisgate_fuzz_top_table},
     Target{"can_errors", axisgate_fuzz_can_errors},
     Target{"dds_command_line", axisgate_fuzz_dds_command_line},
+    Target{"web_requests", axisgate_fuzz_web_requests},
 };
 
 }  // namespace axisgate::fuzz
