@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The Debian packages: what each of them holds, and what CPack says of it. deploy/package makes them.
 #
-# One component is one package: gateway (axisgate), dds (axisgate-dds), simulator (axisgate-sim). A program installs itself where it
+# One component is one package: gateway (axisgate), dds (axisgate-dds), web (axisgate-web), simulator (axisgate-sim). A program installs itself where it
 # is declared; what goes with it is here. Another package is another component here and its description in deploy/debian/cpack.cmake.
 
 find_program(GZIP gzip REQUIRED)
@@ -65,7 +65,7 @@ install(FILES ${files}/example/gateway.json ${files}/udev/70-axisgate.rules ${fi
 set(manual share/doc/axisgate)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/SECURITY.md DESTINATION ${manual} COMPONENT gateway EXCLUDE_FROM_ALL)
 install(FILES ${CMAKE_SOURCE_DIR}/schemas/register-map.md DESTINATION ${manual}/schemas COMPONENT gateway EXCLUDE_FROM_ALL)
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${manual} COMPONENT gateway EXCLUDE_FROM_ALL FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${manual} COMPONENT gateway EXCLUDE_FROM_ALL FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 install(FILES ${files}/plc/axisgate.st ${files}/plc/axisgate.xml ${files}/plc/example.st ${files}/plc/example_plain.st
         DESTINATION ${manual}/deploy/plc COMPONENT gateway EXCLUDE_FROM_ALL)
 install(FILES ${files}/examples/README.md DESTINATION ${manual}/deploy/examples COMPONENT gateway EXCLUDE_FROM_ALL)
@@ -79,6 +79,9 @@ if(TARGET axisgate-dds)
   axisgate_package(dds axisgate-dds)
   install(FILES ${files}/firewall/axisgate-dds.nft DESTINATION share/doc/axisgate-dds/examples COMPONENT dds EXCLUDE_FROM_ALL)
   install(DIRECTORY ${files}/examples/dds/ DESTINATION share/doc/axisgate-dds/examples COMPONENT dds EXCLUDE_FROM_ALL)
+endif()
+if(TARGET axisgate-web)
+  axisgate_package(web axisgate-web)
 endif()
 if(TARGET axisgate-sim)
   axisgate_package(simulator axisgate-sim)

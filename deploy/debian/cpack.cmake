@@ -29,15 +29,21 @@ configuration, /etc/axisgate/gateway.json, and somebody who enables it.
 
 No function of this program is a safety function.")
 set(CPACK_DEBIAN_GATEWAY_PACKAGE_DEPENDS "adduser")
-set(CPACK_DEBIAN_GATEWAY_PACKAGE_SUGGESTS "axisgate-dds, axisgate-sim")
+set(CPACK_DEBIAN_GATEWAY_PACKAGE_SUGGESTS "axisgate-web, axisgate-dds, axisgate-sim")
 set(CPACK_DEBIAN_GATEWAY_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/postinst;${CMAKE_CURRENT_LIST_DIR}/prerm;${CMAKE_CURRENT_LIST_DIR}/postrm")
 
-# The two speak records of one version to each other.
+# The gateway and each of the two speak records of one version to each other.
 set(CPACK_DEBIAN_DDS_PACKAGE_NAME axisgate-dds)
 set(CPACK_DEBIAN_DDS_DESCRIPTION "DDS and ROS 2 topics of axisgate
 The gateway axisgate starts this program where its configuration has a \"dds\"
 section. Every axis is a topic then, for DDS and ROS 2 programs.")
 set(CPACK_DEBIAN_DDS_PACKAGE_DEPENDS "axisgate (= ${version}-1)")
+
+set(CPACK_DEBIAN_WEB_PACKAGE_NAME axisgate-web)
+set(CPACK_DEBIAN_WEB_DESCRIPTION "page and API of axisgate
+The gateway axisgate starts this program where its configuration has a \"web\"
+section. It shows every axis, bus and event in a browser, and commands nothing.")
+set(CPACK_DEBIAN_WEB_PACKAGE_DEPENDS "axisgate (= ${version}-1)")
 
 set(CPACK_DEBIAN_SIMULATOR_PACKAGE_NAME axisgate-sim)
 set(CPACK_DEBIAN_SIMULATOR_DESCRIPTION "simulated motor drives on pseudo-terminals and CAN interfaces

@@ -9,7 +9,7 @@ MOST_FUNCTIONS, MOST_FIELDS = 45, 18
 FEWEST_FUNCTIONS = 7
 # Those that are larger: (functions, fields) as they are. A figure here only ever becomes smaller, and no class is added.
 LARGER = {
-    "axisgate::compose::Gateway": (32, 21),
+    "axisgate::compose::Gateway": (31, 20),
     "axisgate::commands::ManualPlan": (51, 30),
     "axisgate::bus::Bus": (37, 19),
     "axisgate::can::SocketCanLink": (18, 25),

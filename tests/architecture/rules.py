@@ -37,9 +37,16 @@ LAYERS = [
     ("gateway/upstream/link", ("gateway/core",)),
     ("gateway/upstream/dds_link", ("gateway/upstream/link", "gateway/core")),
     ("gateway/upstream/web_link", ("gateway/upstream/link", "gateway/core")),
-    ("gateway/upstream/dds_process", ("gateway/upstream/dds_link", "gateway/manual", "gateway/core")),
-    ("gateway/upstream/dds_host", ("gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/image", "gateway/core")),
-    ("gateway/upstream/dds", ("gateway/upstream/dds_link", "gateway/image", "gateway/core")),
+    # What any program of the gateway's own needs, and whoever keeps one.
+    ("gateway/upstream/program", ("gateway/upstream/link", "gateway/core")),
+    ("gateway/upstream/host", ("gateway/upstream/link", "gateway/image", "gateway/core")),
+    ("gateway/upstream/dds_process", ("gateway/upstream/program", "gateway/upstream/link", "gateway/upstream/dds_link", "gateway/manual", "gateway/core")),
+    ("gateway/upstream/dds_host", ("gateway/upstream/host", "gateway/upstream/dds", "gateway/upstream/dds_link", "gateway/upstream/link", "gateway/image", "gateway/core")),
+    ("gateway/upstream/dds", ("gateway/upstream/feed", "gateway/upstream/dds_link", "gateway/image", "gateway/core")),
+    ("gateway/upstream/web_process", (*(f"gateway/upstream/{r}" for r in ("web_link", "program", "link")), "gateway/listing", "gateway/manual", "gateway/image", "gateway/core")),
+    ("gateway/upstream/web_host", ("gateway/upstream/host", "gateway/upstream/web", "gateway/upstream/web_link", "gateway/upstream/link", "gateway/image", "gateway/core")),
+    ("gateway/upstream/web", ("gateway/upstream/feed", "gateway/upstream/web_link", "gateway/image", "gateway/core")),
+    ("gateway/upstream/feed", ("gateway/image", "gateway/core")),
     # The simulated drives come from the makers' sheets: what they share with the gateway could be wrong on both sides.
     ("tests/simulated", ()),
     # What puts everything together.
@@ -59,16 +66,18 @@ ONE_PLACE = {
     r"<fastdds|<fastrtps|PubSubTypes": ("gateway/upstream/dds_process/", "deploy/examples/", "tests/dds_peers/"),
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/", "adapters/asio/key_mode"),
     r"<valijson/": ("gateway/profile/json/json_schema.cpp",),
-    r"<CLI/": ("gateway/commands/command_", "gateway/upstream/dds_process/options.cpp", "gateway/manual/command_tree.cpp"),
+    r"<CLI/": ("gateway/commands/command_", "gateway/upstream/dds_process/options.cpp", "gateway/upstream/web_process/options.cpp", "gateway/manual/command_tree.cpp"),
+    r"<boost/beast": ("gateway/upstream/web_process/http/header_parser.cpp",),
+    r"<seccomp\.h>": ("gateway/upstream/web_process/system/confinement.cpp",),
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/listing/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
             "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/scan/plan/",
-            "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/link/", "gateway/upstream/web_link/",
-            "gateway/upstream/dds_host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/",
-            "adapters/keya/", "adapters/can/")
-SHELLS = ("gateway/upstream/modbus_tcp/server/", "adapters/modbus_rtu/link/", "adapters/can/link/")
+            "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/link/", "gateway/upstream/web_link/", "gateway/upstream/web/", "gateway/upstream/feed/",
+            *(f"gateway/upstream/web_process/{room}/" for room in ("time", "http", "picture", "files", "api", "stream")),
+            "gateway/upstream/host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/", "adapters/keya/", "adapters/can/")
+SHELLS = ("gateway/upstream/modbus_tcp/server/", "adapters/modbus_rtu/link/", "adapters/can/link/", "gateway/upstream/web_process/http/header_parser.cpp")
 IMPURE = re.compile(r'#include <(boost/asio|boost/beast|sys/socket|sys/epoll|poll\.h|thread|mutex|condition_variable|atomic|random)'
                     r'|(steady|system|high_resolution)_clock::now|std::chrono::\w*clock::now|\bsleep_for\b|\brand\(')
 
@@ -146,7 +155,7 @@ def arrows(root):
 NAMESPACES = [
     ("gateway/core", "axisgate"), ("gateway/image", "axisgate"), ("adapters/asio", "axisgate"), ("gateway/main.cpp", None),
     ("gateway/upstream/modbus_tcp", "axisgate::modbus_tcp"), ("gateway/upstream/web", "axisgate::web"),
-    ("gateway/upstream/link", "axisgate::link"), ("gateway/upstream/host", "axisgate::host"), ("gateway/upstream", "axisgate::dds"),
+    ("gateway/upstream/link", "axisgate::link"), ("gateway/upstream/host", "axisgate::host"), ("gateway/upstream/program", "axisgate::program"), ("gateway/upstream/feed", "axisgate::feed"), ("gateway/upstream", "axisgate::dds"),
     ("tests/simulated", "axisgate::simulated"), ("tests/axisgate_sim", "axisgate::simulated"), ("tests/model", "axisgate::test::reference"),
     ("tests/bench", "axisgate::bench"), ("tests", None),
 ]
@@ -247,7 +256,7 @@ VAGUE_NAMES = {
 # It means answering, reporting, sending, showing and telling apart; in the log alone it means one thing.
 TOLD = {"answered, reported, sent, shown or logged": r"\b(?:\w+_)?[tT]old(?:_\w*)?\b|\w*[a-z]Told\w*"}
 # A group of processes.
-PRIVATE_ELSEWHERE = ("gateway/upstream/dds_host/child_process.cpp",)
+PRIVATE_ELSEWHERE = ("gateway/upstream/host/child_process.cpp",)
 
 
 def private(text, rules_of):

@@ -16,7 +16,7 @@ MB = 1000 * 1000
 
 
 class Images(unittest.TestCase):
-    SHIPPED = {"localhost/axisgate": 30 * MB, "localhost/axisgate-dds": 60 * MB}
+    SHIPPED = {"localhost/axisgate": 30 * MB, "localhost/axisgate-web": 35 * MB, "localhost/axisgate-dds": 60 * MB}
     FROM_NOTHING = [*SHIPPED, "localhost/axisgate-simulator", "localhost/axisgate-discovery"]
 
     def files(self, image):
@@ -42,7 +42,7 @@ class Images(unittest.TestCase):
                 self.assertLess(len(packed), limit)
 
     def test_they_hold_the_programs_and_what_these_need_and_nothing_else(self):
-        programs = {"localhost/axisgate": {"axisgate"}, "localhost/axisgate-dds": {"axisgate", "axisgate-dds"},
+        programs = {"localhost/axisgate": {"axisgate"}, "localhost/axisgate-web": {"axisgate", "axisgate-web"}, "localhost/axisgate-dds": {"axisgate", "axisgate-dds", "axisgate-web"},
                     "localhost/axisgate-simulator": {"axisgate-sim"}, "localhost/axisgate-discovery": {"fast-discovery-server"}}
         # What the container runtime puts in by itself when a container is made.
         made = r"(dev|proc|sys|run|tmp|etc)(/|$)"

@@ -213,8 +213,8 @@ class PagesCommands(unittest.TestCase):
 
     def test_a_wrong_command_is_found(self):
         known = Commands()
-        for command in ("deploy/nothing", "deploy/package --wrong", "apt install ./axisgate-web_*.deb", "apt install --wrong ./axisgate_*.deb", "apt upgrade axisgate",
-                        "systemctl enable gateway", "systemctl mask axisgate", "systemctl enable --wrong axisgate", "journalctl --wrong axisgate", "man axisgate-web",
+        for command in ("deploy/nothing", "deploy/package --wrong", "apt install ./axisgate-mqtt_*.deb", "apt install --wrong ./axisgate_*.deb", "apt upgrade axisgate",
+                        "systemctl enable gateway", "systemctl mask axisgate", "systemctl enable --wrong axisgate", "journalctl --wrong axisgate", "man axisgate-mqtt",
                         "cmake --preset wrong", "kubectl apply -f other.json", "kubectl exec CELL-1 -- x", "docker compose -f deploy/nothing.yaml up", "fastdds discovery -z 0",
                         "fastdds shm", "ros2 topic echo /nothing", "ros2 topic pub /lift/enable std_msgs/msg/Int8 x", "export WRONG=1", "kill -1", "podman run x",
                         "axisgate check x && deploy/nothing", "axisgate-dds topics --wrong", "axisgate-dds nothing", "axisgate-sim --line ./a:jd@1", "cmake --build other", "editor /etc/other"):

@@ -251,28 +251,31 @@ class CleanRootTest(unittest.TestCase):
         self.assertEqual(self.root.processes_of("axisgate"), [])
         self.unit.calls()
 
-    def test_08_the_dds_program_comes_with_its_package(self):
+    def test_08_the_other_programs_come_with_their_packages(self):
         path = self.root.path / CONFIGURATION
-        config = {**json.loads(path.read_text(encoding="utf-8")), "dds": {}}
+        config = {**json.loads(path.read_text(encoding="utf-8")), "dds": {}, "web": {}}
         path.write_text(json.dumps(config), encoding="utf-8")
-        self.root.apt("install", self.root.put(self.newest["axisgate-dds"]))
+        for name in ("axisgate-dds", "axisgate-web"):
+            self.root.apt("install", self.root.put(self.newest[name]))
         self.assertIsNone(self.unit.program)
         self.unit.start()
         self.unit.program.wait_for("axisgate-dds .* runs")
+        self.unit.program.wait_for("axisgate-web .* runs")
         until("axis 1 online", self.online)
         until("a topic of the axis", self.topics_show_it)
 
-        # Both in one upgrade: the gateway is replaced when the other program is new as well.
+        # All in one upgrade: the gateway is replaced when the other programs are new as well.
         log = self.root.path / "var/log/dpkg.log"
         log.write_text("")
-        both = make("--version", "1000.3")
-        for name in ("axisgate", "axisgate-dds"):
-            self.root.put(both[name], "both")
-        self.root.type("both", of_page("docs/upgrade.md", "apt install ./axisgate_*.deb"))
+        all_of_it = make("--version", "1000.3")
+        for name in ("axisgate", "axisgate-dds", "axisgate-web"):
+            self.root.put(all_of_it[name], "all")
+        self.root.type("all", of_page("docs/upgrade.md", "apt install ./axisgate_*.deb"))
         self.assertIsNone(self.unit.failure)
         text = log.read_text()
         self.assertLess(text.index(" upgrade axisgate-dds:"), text.index(" configure axisgate:"))
         self.unit.program.wait_for("axisgate-dds .* runs")
+        self.unit.program.wait_for("axisgate-web .* runs")
 
     def topics_show_it(self):
         command = self.root.command("axisgate", "topics", "--once", network=self.gateway_side)

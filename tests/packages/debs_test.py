@@ -15,7 +15,7 @@ import unittest
 from pathlib import Path
 
 SOURCE, BUILD = (Path(folder).absolute() for folder in sys.argv[1:3])
-GATEWAY, DDS, SIMULATOR = "axisgate", "axisgate-dds", "axisgate-sim"
+GATEWAY, DDS, WEB, SIMULATOR = "axisgate", "axisgate-dds", "axisgate-web", "axisgate-sim"
 OF_EACH = ("bin/{0}", "share/man/man1/{0}.1.gz", "share/bash-completion/completions/{0}", "share/zsh/vendor-completions/_{0}",
            "share/doc/{0}/copyright", "share/doc/{0}/changelog.gz", "share/doc/{0}/changelog.Debian.gz")
 OF_ONE = {
@@ -29,6 +29,7 @@ OF_ONE = {
               "/usr/share/doc/axisgate/deploy/examples/modbus/gateway.json", "/usr/share/doc/axisgate/deploy/examples/node-red/flow.json"),
     DDS: ("/usr/share/axisgate/schemas/axisgate.idl", "/usr/share/doc/axisgate-dds/examples/axisgate-dds.nft",
           "/usr/share/doc/axisgate-dds/examples/README.md"),
+    WEB: (),
     SIMULATOR: (),
 }
 
@@ -69,8 +70,8 @@ class Debs(unittest.TestCase):
         path = self.folder / package / path.lstrip("/")
         return gzip.open(path, "rt").read() if path.suffix == ".gz" else path.read_text(encoding="utf-8")
 
-    def test_there_are_three_and_each_holds_its_files(self):
-        self.assertEqual(set(self.debs), {GATEWAY, DDS, SIMULATOR})
+    def test_there_are_four_and_each_holds_its_files(self):
+        self.assertEqual(set(self.debs), {GATEWAY, DDS, WEB, SIMULATOR})
         for name, files in self.files.items():
             expected = {"/usr/" + path.format(name) for path in OF_EACH} | set(OF_ONE[name])
             self.assertEqual(expected - set(files), set(), name)
@@ -109,10 +110,12 @@ class Debs(unittest.TestCase):
         version = self.field(GATEWAY, "Version")
         self.assertRegex(self.field(DDS, "Depends"), r"libfastrtps")
         self.assertIn(f"axisgate (= {version})", self.field(DDS, "Depends"))
-        for name in (GATEWAY, SIMULATOR):
+        self.assertIn(f"axisgate (= {version})", self.field(WEB, "Depends"))
+        self.assertIn("libseccomp2", self.field(WEB, "Depends"))
+        for name in (GATEWAY, WEB, SIMULATOR):
             needed = self.field(name, "Depends")
             self.assertRegex(needed, r"libc6 \(>= ")
-            self.assertNotRegex(needed, "fast|axisgate-dds")
+            self.assertNotRegex(needed, "fast|axisgate-dds" if name == WEB else "fast|axisgate-dds|axisgate-web|seccomp")
             self.assertNotRegex(self.field(name, "Recommends"), ".")
         self.assertIn("libmodbus5", self.field(GATEWAY, "Depends"))
         self.assertIn("adduser", self.field(GATEWAY, "Depends"))
@@ -135,8 +138,8 @@ class Debs(unittest.TestCase):
     def test_gateway_json_5_names_each_section_of_a_configuration(self):
         page = self.read(GATEWAY, "/usr/share/man/man5/gateway.json.5.gz")
         schema = json.loads((SOURCE / "schemas/gateway.schema.json").read_text(encoding="utf-8"))
-        # "http" has no listener in this version, "$schema" is for editors.
-        sections = set(schema["properties"]) - {"http", "$schema"}
+        # "$schema" is for editors.
+        sections = set(schema["properties"]) - {"$schema"}
         self.assertEqual(set(re.findall(r"^\.TP\n\.B (\S+)$", page, re.MULTILINE)), sections)
 
     def test_the_programs_find_their_profiles_where_they_are_unpacked(self):

@@ -23,6 +23,7 @@ WORDS = {
         ("profile", "ch"): {"check"},
     },
     "axisgate-dds": {("ser",): {"serve"}},
+    "axisgate-web": {("ser",): {"serve"}},
     "axisgate-sim": {("--reply-",): {"--reply-delay-ms"}},
 }
 NAMES = re.compile(r"(?<![\w-])--?[A-Za-z][\w-]*")

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <vector>
+
 namespace axisgate {
 namespace {
 
@@ -34,15 +37,40 @@ TEST(ProcessImage, AnAxisThatIsTakenOutIsSeenToGoAndWhatItDidHasEnded) {
   const AxisImage* const axis = &image.add_axis(3, "lift", 0);
   const std::uint32_t before = axis->sequence;
   const AxisRecord::Point since = axis->record.now();
-  image.changes.take([](std::size_t) {});
+  ChangeBoard::Reader reader(image.changes, [] {});
   image.remove_axis(3);
   std::size_t marked = 0;
-  image.changes.take([&](std::size_t number) { marked = number; });
+  reader.take([&](std::size_t number) { marked = number; });
   EXPECT_EQ(marked, 3U);
   EXPECT_EQ(image.find(3), nullptr);
   EXPECT_EQ(&image.add_axis(3, "lift", 0), axis) << "whoever holds it may go on";
   EXPECT_EQ(axis->sequence, before + 1);
   EXPECT_TRUE(axis->record.interrupted(since, 1));
+}
+
+TEST(ChangeBoard, EachReaderFindsEveryMarkThatItHasNotTakenAndIsWokenOnce) {
+  ChangeBoard board;
+  int first_woken = 0;
+  int second_woken = 0;
+  ChangeBoard::Reader first(board, [&] { ++first_woken; });
+  auto second = std::make_unique<ChangeBoard::Reader>(board, [&] { ++second_woken; });
+  const auto taken = [](ChangeBoard::Reader& reader) {
+    std::vector<std::size_t> out;
+    reader.take([&](std::size_t axis) { out.push_back(axis); });
+    return out;
+  };
+  board.mark(3);
+  board.mark(1);
+  EXPECT_EQ(taken(first), (std::vector<std::size_t>{1, 3}));
+  board.mark(2);
+  EXPECT_EQ(taken(first), (std::vector<std::size_t>{2}));
+  EXPECT_EQ(first_woken, 2);
+  EXPECT_EQ(taken(*second), (std::vector<std::size_t>{1, 2, 3})) << "a slow one misses nothing";
+  EXPECT_EQ(second_woken, 1);
+  second.reset();
+  board.mark(4);
+  EXPECT_EQ(taken(first), (std::vector<std::size_t>{4}));
+  EXPECT_EQ(second_woken, 1);
 }
 
 }  // namespace

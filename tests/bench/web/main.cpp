@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// axisgate-web-bench: what the gateway's half and axisgate-web take of the machine with 64 axes at 100 Hz and 0, 1, 10
+// and 50 pages; how long a change takes to a page's text; how heavy the page is.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <string>
+
+#include "tests/bench/report.hpp"
+#include "tests/bench/web/looking.hpp"
+#include "tests/bench/web/moving_axes.hpp"
+
+namespace {
+
+using namespace axisgate::bench;
+using std::chrono::milliseconds;
+
+struct Usage {
+  double processor_s = 0;
+  double resident_mib = 0;
+};
+
+Usage usage_of(pid_t pid) {
+  const std::string folder = "/proc/" + std::to_string(pid);
+  std::ifstream stat(folder + "/stat");
+  std::string text(std::istreambuf_iterator<char>(stat), {});
+  // proc(5): utime and stime are fields 14 and 15, the second one, in brackets, may hold blanks.
+  text = text.substr(text.rfind(')') + 2);
+  std::size_t at = 0;
+  for (int field = 3; field < 14; ++field) at = text.find(' ', at) + 1;
+  char* rest = nullptr;
+  const double user = std::strtod(text.c_str() + at, &rest);
+  const double system = std::strtod(rest, nullptr);
+  std::ifstream statm(folder + "/statm");
+  double pages = 0, resident = 0;
+  statm >> pages >> resident;
+  return {(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK)),
+          resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024 * 1024)};
+}
+
+/// Eight values of 64 axes, each changed 100 times a second; pages with the stream's own period of 100 ms.
+void load(Report& report, bool quick) {
+  constexpr int kAxes = 64, kPeriodMs = 100;
+  const milliseconds lasting(quick ? 500 : 10'000);
+  MovingAxes axes(kAxes, milliseconds(10), 50);
+  for (const int pages : {0, 1, 10, 50}) {
+    const Looking looking(axes.port(), pages, kPeriodMs);
+    const std::uint64_t bytes = looking.bytes();
+    const auto core = axes.thread_time();
+    const Usage web = usage_of(axes.process());
+    std::this_thread::sleep_for(lasting);
+    const double seconds = std::chrono::duration<double>(lasting).count();
+    const auto core_after = axes.thread_time();
+    const Usage web_after = usage_of(axes.process());
+    const auto of = [&](const char* what) { return fmt::format("{} pages: {}", pages, what); };
+    report.row(of("gateway's half, % of a core"), 100 * (core_after - core).count() / seconds, goal(1));
+    report.row(of("axisgate-web, % of a core"), 100 * (web_after.processor_s - web.processor_s) / seconds);
+    report.row(of("axisgate-web, resident MiB"), web_after.resident_mib);
+    if (pages > 0)
+      report.row(of("a stream, kB/s"), static_cast<double>(looking.bytes() - bytes) / 1000 / pages / seconds);
+  }
+}
+
+/// From a change of the image to the text that a page reads, with the shortest period of a stream.
+void latency(Report& report, bool quick) {
+  MovingAxes axes(1, milliseconds(0), 1);
+  Looking page(axes.port(), 1, 50);
+  Samples samples;
+  const int changes = quick ? 5 : 200;
+  for (int change = 1; change <= changes; ++change) {
+    // Some time after the change before, so that a change meets any phase of the stream's period.
+    std::this_thread::sleep_for(milliseconds(150 + 7 * (change % 11)));
+    const std::string text = fmt::format("\"position_rev\":{}", change);
+    page.look_for(text);
+    axes.set(change);
+    samples.push_back(1000 * page.until_first_page_reads(text).count());
+  }
+  report.row("change to a page's text, median ms", median(samples));
+  report.row("change to a page's text, p95 ms", quantile(samples, 0.95));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  try {
+    const bool quick = std::erase(words, "--quick") != 0;
+    std::string json;
+    if (words.size() > 2 && words[0] == "--json") {
+      json = words[1];
+      words.erase(words.begin(), words.begin() + 2);
+    }
+    Report report(json);
+    bool known = !words.empty();
+    for (const std::string& bench : words) {
+      report.begin(bench);
+      if (bench == "web-latency")
+        latency(report, quick);
+      else if (bench == "web-load")
+        load(report, quick);
+      else
+        known = false;
+    }
+    if (known) return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "axisgate-web-bench: {}\n", error.what());
+    return 1;
+  }
+  fmt::print(stderr, "usage: axisgate-web-bench [--quick] [--json FILE] web-latency|web-load...\n");
+  return 2;
+}
