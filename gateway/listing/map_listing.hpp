@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +46,10 @@ struct MapEntry {
 };
 
 [[nodiscard]] std::vector<MapEntry> map_entries(const ListedMap& map);
+/// As an object of JSON, its note left out.
+[[nodiscard]] nlohmann::ordered_json entry_json(const MapEntry& entry);
+/// RFC 4180, 2.5 to 2.7.
+[[nodiscard]] std::string csv_cell(std::string_view cell);
 
 enum class MapFormat : std::uint8_t { json, csv, markdown, table, structured_text };
 /// "json", "csv", "md", "table", "st".

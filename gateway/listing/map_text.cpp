@@ -28,28 +28,10 @@ std::string json_text(const ListedMap& map, const std::vector<MapEntry>& entries
                     (map.float_numbers ? "\", \"numbers\": \"float" : "") + "\", \"entries\": [";
   const char* separator = "\n  ";
   for (const MapEntry& entry : entries) {
-    nlohmann::ordered_json line;
-    line["table"] = entry.table;
-    line["address"] = entry.address;
-    line["count"] = entry.count;
-    line["axis"] = entry.axis ? nlohmann::ordered_json(*entry.axis) : nlohmann::ordered_json();
-    line["bus"] = entry.bus ? nlohmann::ordered_json(*entry.bus) : nlohmann::ordered_json();
-    line["name"] = entry.name;
-    line["type"] = entry.type;
-    line["unit"] = entry.unit;
-    line["access"] = entry.access;
-    line["supported"] = entry.supported;
-    out += separator + line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    out += separator + entry_json(entry).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     separator = ",\n  ";
   }
   return out + "\n]}\n";
-}
-
-std::string csv_cell(const std::string& cell) {
-  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
-  std::string quoted = "\"";
-  for (const char each : cell) quoted += each == '"' ? std::string("\"\"") : std::string(1, each);
-  return quoted + "\"";
 }
 
 std::string csv_line(const Cells& cells) {
@@ -109,6 +91,28 @@ std::string titles(const ListedMap& map) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json entry_json(const MapEntry& entry) {
+  nlohmann::ordered_json out;
+  out["table"] = entry.table;
+  out["address"] = entry.address;
+  out["count"] = entry.count;
+  out["axis"] = entry.axis ? nlohmann::ordered_json(*entry.axis) : nlohmann::ordered_json();
+  out["bus"] = entry.bus ? nlohmann::ordered_json(*entry.bus) : nlohmann::ordered_json();
+  out["name"] = entry.name;
+  out["type"] = entry.type;
+  out["unit"] = entry.unit;
+  out["access"] = entry.access;
+  out["supported"] = entry.supported;
+  return out;
+}
+
+std::string csv_cell(std::string_view cell) {
+  if (cell.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(cell);
+  std::string quoted = "\"";
+  for (const char each : cell) quoted += each == '"' ? std::string("\"\"") : std::string(1, each);
+  return quoted + "\"";
+}
 
 std::optional<MapFormat> map_format_named(std::string_view name) {
   using enum MapFormat;

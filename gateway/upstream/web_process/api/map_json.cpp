@@ -38,29 +38,12 @@ std::vector<listing::MapEntry> entries_of(const Picture& picture, std::optional<
   return out;
 }
 
-std::string csv_cell(std::string_view cell) {
-  if (cell.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(cell);
-  std::string out = "\"";
-  for (const char c : cell) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 }  // namespace
 
 std::string map_json(const Picture& picture, std::optional<std::uint16_t> axis) {
   std::string out = "{\"rows\":[";
   for (const listing::MapEntry& entry : entries_of(picture, axis)) {
-    nlohmann::ordered_json row;
-    row["table"] = entry.table;
-    row["address"] = entry.address;
-    row["count"] = entry.count;
-    row["axis"] = entry.axis ? nlohmann::ordered_json(*entry.axis) : nlohmann::ordered_json();
-    row["bus"] = entry.bus ? nlohmann::ordered_json(*entry.bus) : nlohmann::ordered_json();
-    row["name"] = entry.name;
-    row["type"] = entry.type;
-    row["unit"] = entry.unit;
-    row["access"] = entry.access;
-    row["supported"] = entry.supported;
+    nlohmann::ordered_json row = listing::entry_json(entry);
     row["note"] = entry.note;
     if (out.size() > kMaxJson) break;  // it is refused: no more of it is made
     out += (out.back() == '[' ? "" : ",") + row.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -72,9 +55,9 @@ std::string map_csv(const Picture& picture, std::optional<std::uint16_t> axis) {
   std::string out = "table,address,count,axis,bus,name,type,unit,access,supported,note\r\n";
   for (const listing::MapEntry& entry : entries_of(picture, axis))
     out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\r\n", entry.table, entry.address, entry.count,
-                       entry.axis ? std::to_string(*entry.axis) : "", csv_cell(entry.bus.value_or("")),
-                       csv_cell(entry.name), entry.type, csv_cell(entry.unit), entry.access, entry.supported,
-                       csv_cell(entry.note));
+                       entry.axis ? std::to_string(*entry.axis) : "", listing::csv_cell(entry.bus.value_or("")),
+                       listing::csv_cell(entry.name), entry.type, listing::csv_cell(entry.unit), entry.access,
+                       entry.supported, listing::csv_cell(entry.note));
   return out;
 }
 
