@@ -8,9 +8,7 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <string>
 #include <thread>
 
@@ -20,6 +18,7 @@
 #include "tests/bench/dds/other_self.hpp"
 #include "tests/bench/dds/subscriber.hpp"
 #include "tests/bench/report.hpp"
+#include "tests/bench/usage.hpp"
 
 namespace {
 
@@ -147,29 +146,6 @@ void latency(Report& report, bool quick) {
   // A change each 2 ms, the two in turns; the bare one is write() to the same subscriber. Goal: 50 us more.
   report.rows("change of the image to a subscriber, us", image_samples, "bare writer", bare_samples);
   report.rows("change of the image to a subscriber, us", image_samples, "two processes", relay_samples);
-}
-
-struct Usage {
-  double processor_s = 0;
-  double resident_mib = 0;
-};
-
-Usage usage_of(pid_t pid) {
-  const std::string folder = "/proc/" + std::to_string(pid);
-  std::ifstream stat(folder + "/stat");
-  std::string text(std::istreambuf_iterator<char>(stat), {});
-  // proc(5): utime and stime are fields 14 and 15, the second one, in brackets, may hold blanks.
-  text = text.substr(text.rfind(')') + 2);
-  std::size_t at = 0;
-  for (int field = 3; field < 14; ++field) at = text.find(' ', at) + 1;
-  char* rest = nullptr;
-  const double user = std::strtod(text.c_str() + at, &rest);
-  const double system = std::strtod(rest, nullptr);
-  std::ifstream statm(folder + "/statm");
-  double pages = 0, resident = 0;
-  statm >> pages >> resident;
-  return {(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK)),
-          resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024 * 1024)};
 }
 
 void load(Report& report, bool quick) {

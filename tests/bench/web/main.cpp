@@ -2,14 +2,13 @@
 // axisgate-web-bench: what the gateway's half and axisgate-web take of the machine with 64 axes at 100 Hz and 0, 1, 10
 // and 50 pages; how long a change takes to a page's text; how heavy the page is.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <string>
+#include <thread>
 
 #include "tests/bench/report.hpp"
+#include "tests/bench/usage.hpp"
 #include "tests/bench/web/looking.hpp"
 #include "tests/bench/web/moving_axes.hpp"
 
@@ -17,29 +16,6 @@ namespace {
 
 using namespace axisgate::bench;
 using std::chrono::milliseconds;
-
-struct Usage {
-  double processor_s = 0;
-  double resident_mib = 0;
-};
-
-Usage usage_of(pid_t pid) {
-  const std::string folder = "/proc/" + std::to_string(pid);
-  std::ifstream stat(folder + "/stat");
-  std::string text(std::istreambuf_iterator<char>(stat), {});
-  // proc(5): utime and stime are fields 14 and 15, the second one, in brackets, may hold blanks.
-  text = text.substr(text.rfind(')') + 2);
-  std::size_t at = 0;
-  for (int field = 3; field < 14; ++field) at = text.find(' ', at) + 1;
-  char* rest = nullptr;
-  const double user = std::strtod(text.c_str() + at, &rest);
-  const double system = std::strtod(rest, nullptr);
-  std::ifstream statm(folder + "/statm");
-  double pages = 0, resident = 0;
-  statm >> pages >> resident;
-  return {(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK)),
-          resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024 * 1024)};
-}
 
 /// Eight values of 64 axes, each changed 100 times a second; pages with the stream's own period of 100 ms.
 void load(Report& report, bool quick) {
