@@ -84,6 +84,28 @@ std::string_view unit_text(Kind kind) {
   return kUnits.of(kind);
 }
 
+ShownUnit shown_unit(Kind kind) {
+  switch (kind) {
+    case Kind::code:
+      return {};
+    case Kind::position:
+      return {1, "rev"};
+    case Kind::velocity:
+      return {1000, "rpm"};
+    case Kind::acceleration:
+      return {10, "rpm/s"};
+    case Kind::torque:
+      return {10, "%"};
+    case Kind::current:
+      return {100, "A"};
+    case Kind::temperature:
+      return {10, "degC"};
+    case Kind::voltage:
+      return {10, "V"};
+  }
+  return {};
+}
+
 std::int64_t no_value(RegisterType type) {
   const std::int64_t numbers = std::int64_t{1} << (16 * registers_of(type));
   const bool is_signed = type == i16 || type == i32;

@@ -76,6 +76,12 @@ struct QuantityRow {
 [[nodiscard]] constexpr std::uint32_t bit(Quantity quantity) { return 1U << static_cast<unsigned>(quantity); }
 /// "0.001 rpm"; empty for codes; positions say "1/units_per_rev rev".
 [[nodiscard]] std::string_view unit_text(Kind kind);
+/// The unit that people read a number of this kind in.
+struct ShownUnit {
+  int registers = 1;           ///< register units in one of it; of positions the axis's units_per_rev takes its place
+  std::string_view name = {};  ///< "rpm"; empty for codes
+};
+[[nodiscard]] ShownUnit shown_unit(Kind kind);
 
 /// Smallest and largest value a register of this type can show. The end that means "no value" (i16 -32768, u16 65535,
 /// i32 -2147483648, u32 4294967295, design 3.2) is outside.

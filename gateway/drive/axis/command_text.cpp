@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string_view>
 
 #include "gateway/core/name_table.hpp"
@@ -16,22 +15,10 @@ namespace {
 
 /// A register's number in the unit that people speak in; empty for codes.
 std::string in_words(const AxisCore& core, Kind kind, std::int64_t value) {
-  struct Unit {
-    double registers;  ///< that are one of it
-    std::string_view name;
-  };
-  const std::map<Kind, Unit> units{
-      {Kind::position, {core.model.units_per_rev.to_double(), "rev"}},
-      {Kind::velocity, {1000, "rpm"}},
-      {Kind::acceleration, {10, "rpm/s"}},
-      {Kind::torque, {10, "%"}},
-      {Kind::current, {100, "A"}},
-      {Kind::temperature, {10, "degC"}},
-      {Kind::voltage, {10, "V"}},
-  };
-  const auto unit = units.find(kind);
-  if (unit == units.end()) return {};
-  return fmt::format(" ({:.6g} {})", static_cast<double>(value) / unit->second.registers, unit->second.name);
+  const ShownUnit unit = shown_unit(kind);
+  if (unit.name.empty()) return {};
+  const double registers = kind == Kind::position ? core.model.units_per_rev.to_double() : unit.registers;
+  return fmt::format(" ({:.6g} {})", static_cast<double>(value) / registers, unit.name);
 }
 
 std::string_view asked_by(std::uint16_t word) {

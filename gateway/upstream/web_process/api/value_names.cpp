@@ -44,23 +44,8 @@ constexpr std::array<std::string_view, kQuantityCount> kValueNames{"statusword",
 
 /// Register units in one of the name's.
 long double units_in(Kind kind, const AxisInfoRecord& axis) {
-  constexpr long double kThousandth = 1000, kHundredth = 100, kTenth = 10;
-  switch (kind) {
-    case Kind::code:
-      return 1;
-    case Kind::position:
-      return static_cast<long double>(axis.units_numerator) / static_cast<long double>(axis.units_denominator);
-    case Kind::velocity:
-      return kThousandth;
-    case Kind::current:
-      return kHundredth;
-    case Kind::acceleration:
-    case Kind::torque:
-    case Kind::temperature:
-    case Kind::voltage:
-      return kTenth;
-  }
-  return 1;
+  if (kind != Kind::position) return shown_unit(kind).registers;
+  return static_cast<long double>(axis.units_numerator) / static_cast<long double>(axis.units_denominator);
 }
 
 }  // namespace
