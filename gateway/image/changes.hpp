@@ -19,8 +19,8 @@ class ChangeBoard {
   /// One server's marks, as long as it lives; the board outlives it.
   class Reader {
    public:
-    /// `wake`: called at the first mark after a take(), inside whatever changes the image: it may arm a timer, and no
-    /// more.
+    /// `wake`: called at the first axis that is marked after a take(), and at the first event after a take() or a
+    /// take_event(), inside whatever changes the image: it may arm a timer, and no more.
     Reader(ChangeBoard& board, std::function<void()> wake) : board_(board), wake_(std::move(wake)) {
       board_.readers_.push_back(this);
     }
@@ -28,25 +28,31 @@ class ChangeBoard {
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
 
-    /// Calls `each` with every marked axis in the order of their numbers, and forgets the marks.
+    /// Calls `each` with every marked axis in the order of their numbers, and forgets the marks and the event.
     template <typename Each>
     void take(Each&& each) {
+      event_ = false;
       if (marks_.none()) return;
       const auto marked = std::exchange(marks_, {});
       for (std::size_t i = 0; i < kPlaces; ++i)
         if (marked.test(i)) each(i);
     }
+    /// Forgets the event alone: of a reader that takes axes at its own pace.
+    void take_event() { event_ = false; }
+    /// An axis is marked.
+    [[nodiscard]] bool any() const { return marks_.any(); }
 
    private:
     friend class ChangeBoard;
     void mark(std::size_t axis) {
-      const bool first = marks_.none();
-      marks_.set(axis);
+      const bool first = axis == 0 ? !std::exchange(event_, true) : marks_.none();
+      if (axis != 0) marks_.set(axis);
       if (first) wake_();
     }
     ChangeBoard& board_;
     std::function<void()> wake_;
     std::bitset<kPlaces> marks_;
+    bool event_ = false;
   };
 
   void mark(std::size_t axis) {

@@ -70,7 +70,9 @@ HelloRecord WebSession::hello() const {
 
 std::optional<Record> WebSession::next(Instant now) {
   if (!link_up_) return std::nullopt;
-  changes_.take([&](std::size_t axis) { axes_.changed(static_cast<AxisNumber>(axis), now); });
+  changes_.take_event();
+  // Axes wait for the tick: each one taken before it would have the next one wake us once more.
+  if (samples_due_ <= now) changes_.take([&](std::size_t axis) { axes_.changed(static_cast<AxisNumber>(axis), now); });
   if (!fixed_.empty()) {
     Record record = std::move(fixed_.front());
     fixed_.pop_front();
@@ -137,7 +139,7 @@ void WebSession::look_for_other_info() {
 Instant WebSession::wake_at() const {
   if (!link_up_) return kNever;
   if (!fixed_.empty() || events_.waiting()) return kLongAgo;
-  return std::min(std::max(samples_due_, axes_.due()), statistics_due_);
+  return std::min(changes_.any() ? samples_due_ : std::max(samples_due_, axes_.due()), statistics_due_);
 }
 
 }  // namespace axisgate::web

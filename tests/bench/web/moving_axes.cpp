@@ -72,7 +72,7 @@ struct MovingAxes::Impl {
     server->run(settings, facts);
     thread = std::thread([this] { io.run(); });
     ready.get_future().wait();
-    if (every.count() > 0) boost::asio::post(io, [this] { timer->expires_at(runtime.now()); });
+    if (every.count() > 0) boost::asio::post(io, [this] { timer->expires_at(due = runtime.now()); });
   }
   ~Impl() {
     boost::asio::post(io, [this] { io.stop(); });
@@ -80,14 +80,15 @@ struct MovingAxes::Impl {
     server->stop();
   }
 
+  /// One after another, as their drives answer.
   void turn() {
-    const Instant now = runtime.now();
-    for (const auto& axis : image.axes()) {
-      for (const Quantity quantity : kMoving) (*axis)[quantity] = {(*axis)[quantity].value + 1, true, true, now};
-      ++axis->sequence;
-      image.changes.mark(axis->number);
-    }
-    timer->expires_at(now + every);
+    AxisImage& axis = *image.axes()[next];
+    next = (next + 1) % image.axes().size();
+    for (const Quantity quantity : kMoving) axis[quantity] = {axis[quantity].value + 1, true, true, runtime.now()};
+    ++axis.sequence;
+    image.changes.mark(axis.number);
+    due += Duration(every) / static_cast<int>(image.axes().size());
+    timer->expires_at(due);
   }
   void set(std::int64_t turns) {
     AxisImage& axis = *image.find(1);
@@ -108,6 +109,8 @@ struct MovingAxes::Impl {
   bool told = false;
   std::unique_ptr<web::WebServer> server;
   std::unique_ptr<Timer> timer;
+  std::size_t next = 0;
+  Instant due{};
   std::thread thread;
 };
 

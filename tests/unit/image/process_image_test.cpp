@@ -73,5 +73,21 @@ TEST(ChangeBoard, EachReaderFindsEveryMarkThatItHasNotTakenAndIsWokenOnce) {
   EXPECT_EQ(second_woken, 1);
 }
 
+TEST(ChangeBoard, AReaderThatLeavesAxesForLaterIsWokenByEachEventThatItTakes) {
+  ChangeBoard board;
+  int woken = 0;
+  ChangeBoard::Reader reader(board, [&] { ++woken; });
+  board.mark(3);
+  board.mark(0);
+  board.mark(0);
+  EXPECT_EQ(woken, 2) << "once for axes, once for events";
+  reader.take_event();
+  board.mark(0);
+  EXPECT_EQ(woken, 3);
+  board.mark(4);
+  EXPECT_EQ(woken, 3);
+  EXPECT_TRUE(reader.any());
+}
+
 }  // namespace
 }  // namespace axisgate

@@ -117,6 +117,9 @@ TEST_F(Pages, GetTheNewestOfAnAxisAtEachTickAndNotBefore) {
   now += 4ms;
   move(1, 102);
   move(3, 7);
+  EXPECT_EQ(woken, 1) << "until the tick";
+  image.changes.mark(0);
+  EXPECT_EQ(woken, 2) << "an event does not wait for it";
   now = kStart + 10ms;
   const auto got = axes();
   ASSERT_THAT(got, SizeIs(2));
