@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <variant>
 
 #include "gateway/commands/common/config_faults.hpp"
+#include "gateway/commands/profile/eds_file.hpp"
 #include "gateway/profile/eds/eds_compare.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 
@@ -31,7 +29,8 @@ bool has_place(const Profile& profile, const std::string& object, std::string_vi
 /// Some object gives it on this protocol. What constants decide (torque in percent needs a rated current) is `axisgate
 /// check`'s to say: it knows the configured drive.
 bool given(const Profile& profile, const QuantityRow& row, std::string_view protocol) {
-  if (row.quantity == Quantity::error_code) return !profile.alarms.empty();  // made from the alarm table
+  // Made from the alarm table, or from what the drive sends.
+  if (row.quantity == Quantity::error_code) return !profile.alarms.empty() || profile.has_emergency_word(protocol);
   constexpr std::array kEmulated{Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode};
   if (profile.state.is_virtual && std::ranges::find(kEmulated, row.quantity) != kEmulated.end()) return true;
   const profile::QuantitySpec* quantity = profile.find(row.quantity);
@@ -59,47 +58,15 @@ void print_protocol(const Profile& profile, const std::string& protocol, const p
   if (!missing.empty()) fmt::print("  {:<14}without {}\n", "", fmt::join(missing, ", "));
 }
 
-/// The content; a fault where there is none to be had.
-std::variant<std::string, config::ConfigFault> content_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(profile::kMaxEdsBytes + 1, '\0');
-  if (stream) stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad() || (!stream && stream.gcount() == 0 && !stream.eof()))
-    return config::ConfigFault{file, "", std::string("cannot be read: ") + std::strerror(errno)};
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
-
-std::vector<config::ConfigFault> faults_of(const std::string& file, const profile::Eds& eds) {
-  std::vector<config::ConfigFault> out;
-  for (const profile::EdsFault& fault : eds.faults)
-    out.push_back({file, "", fault.line == 0 ? fault.message : fmt::format("line {}: {}", fault.line, fault.message)});
-  return out;
-}
-
-std::string printable(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, '?');
-  return text;
-}
-
-std::string identity_text(const profile::Eds& eds) {
-  std::string out = fmt::format("{} {}", printable(eds.vendor_name), printable(eds.product_name));
-  if (eds.vendor) out += fmt::format(", vendor {:#x}", *eds.vendor);
-  if (eds.product) out += fmt::format(", product {:#x}", *eds.product);
-  if (eds.revision) out += fmt::format(", revision {:#x}", *eds.revision);
-  return out;
-}
-
 int compare(const ProfileCheckOptions& options, const profile::LoadedProfile& loaded) {
   const Profile& profile = loaded.profile;
-  const auto text = content_of(options.eds);
-  if (const auto* fault = std::get_if<config::ConfigFault>(&text)) return tell({*fault});
-  const profile::Eds eds = profile::parse_eds(std::get<std::string>(text));
-  if (!eds.faults.empty()) return tell(faults_of(options.eds, eds));
+  const auto read = load_eds(options.eds);
+  if (const auto* wrong = std::get_if<std::vector<config::ConfigFault>>(&read)) return tell(*wrong);
+  const auto& eds = std::get<profile::Eds>(read);
   if (!profile.protocols.contains("canopen"))
     return tell({{options.file, "/protocols", "has no canopen, and an EDS describes nothing else"}});
   fmt::print("  {:<14}{}: {}, {} objects\n", "EDS", options.eds, identity_text(eds), eds.objects.size());
+  print_remarks(eds);
   std::vector<config::ConfigFault> faults;
   for (const profile::EdsContradiction& found : profile::contradictions(profile, eds)) {
     const profile::Written written = profile::written_at(loaded.written, found.pointer);
@@ -108,7 +75,7 @@ int compare(const ProfileCheckOptions& options, const profile::LoadedProfile& lo
   }
   if (faults.empty()) fmt::print("  {:<14}nothing in it contradicts the profile\n", "");
   std::fflush(stdout);
-  return faults.empty() ? 0 : tell(faults);
+  return tell(faults);
 }
 
 }  // namespace
@@ -122,8 +89,16 @@ int run(const ProfileCheckOptions& options) {
 
   const Profile& profile = loaded.profile;
   fmt::print("{} is valid: {}, {} motor{}, {} alarms, {} checks\n", options.file, profile.title, profile.axes.size(),
-             profile.axes.size() == 1 ? "" : "s", profile.alarms.size(), profile.checks.size());
+             profile.axes.size() == 1 ? "" : "s", profile.alarms.size(), profile.section("checks").elements().size());
   for (const auto& [protocol, facts] : profile.protocols) print_protocol(profile, protocol, facts);
+  std::vector<std::string> shared;
+  for (const AxisSlot motor : profile.shared()) shared.push_back(profile.axes[motor]);
+  if (!shared.empty())
+    fmt::print("  {:<14}motors {} are enabled, stopped and reset as one, and have one mode and one owner\n", "shared",
+               fmt::join(shared, " and "));
+  for (const profile::Ask& ask : profile.open_asks({}))
+    fmt::print("  {:<14}{}: {}{}\n", "open", ask.of, ask.question(),
+               ask.before.empty() ? "" : fmt::format("; before it is answered no {}", fmt::join(ask.before, ", no ")));
   return options.eds.empty() ? 0 : compare(options, loaded);
 }
 

@@ -3,9 +3,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include "gateway/config/config_loader.hpp"
 #include "gateway/profile/eds/eds.hpp"
 #include "gateway/profile/eds/eds_compare.hpp"
+#include "gateway/profile/make/from_form.hpp"
+#include "gateway/profile/read/profile_layers.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"
@@ -51,14 +55,37 @@ void configuration(Bytes content) {
   }
 }
 
+void is_a_document(const profile::MadeProfile& made) {
+  must(made.text.empty() != made.faults.empty(), "a profile is made, or it is told why not");
+  if (made.text.empty()) return;
+  must(std::holds_alternative<nlohmann::json>(profile::parse_json(made.text)), "what is made is JSON");
+}
+
+void makes_a_document(const profile::Eds& sheet) {
+  static const profile::LayeredProfile kBase =
+      profile::layered_profile(kShippedProfiles + "/cia402-generic.json", {kShippedProfiles});
+  is_a_document(profile::profile_from_eds(sheet, *kBase.document, {"made", "cia402-generic", "drive.eds"}));
+}
+
 void eds(Bytes content) {
   const profile::Eds sheet = profile::parse_eds({reinterpret_cast<const char*>(content.data()), content.size()});
   must(sheet.objects.size() <= profile::kMaxEdsObjects, "objects have their bound");
-  must(sheet.faults.size() <= profile::kMaxEdsFaults, "mistakes have their bound");
+  must(sheet.remarks.size() <= profile::kMaxEdsRemarks, "remarks have their bound");
   static const profile::LoadedProfile kProfile =
       profile::load_profile(kShippedProfiles + "/leadshine-ld2-can.json", {kShippedProfiles});
   for (const auto& each : profile::contradictions(kProfile.profile, sheet))
     must(!each.message.empty(), "a contradiction has its words");
+  makes_a_document(sheet);
+}
+
+/// As a table of registers, whatever it is.
+void form(Bytes content) {
+  const std::string_view text{reinterpret_cast<const char*>(content.data()), content.size()};
+  for (const profile::FormOf what : {profile::FormOf::modbus, profile::FormOf::canopen}) {
+    const profile::Form form = profile::parse_form(text, what);
+    must(!form.faults.empty() || !form.rows.empty(), "a table is one, or it is told why not");
+    if (form.faults.empty()) is_a_document(profile::profile_from_form(form, {"made", "", "table.csv"}));
+  }
 }
 
 }  // namespace
@@ -74,5 +101,6 @@ int axisgate_fuzz_configuration(const std::uint8_t* data, std::size_t size) {
 }
 int axisgate_fuzz_eds(const std::uint8_t* data, std::size_t size) {
   axisgate::fuzz::eds({data, size});
+  axisgate::fuzz::form({data, size});
   return 0;
 }

@@ -34,32 +34,27 @@ class Comparison {
       compare_tpdos(protocol->second.canopen);
       compare_loss(protocol->second);
     }
-    for (const WriteSpec& write : profile_.setup) compare_setup(write);
+    for (const JsonNode& write : profile_.section("setup").elements()) compare_setup(write);
     return std::move(out_);
   }
 
  private:
-  [[nodiscard]] const EdsObject* find(ObjectAddress address) const {
-    const auto at = eds_.objects.find(address);
-    return at == eds_.objects.end() ? nullptr : &at->second;
-  }
-  [[nodiscard]] bool has_index(std::uint16_t index) const {
-    const auto at = eds_.objects.lower_bound({index, 0});
-    return at != eds_.objects.end() && at->first.index == index;
-  }
+  [[nodiscard]] const EdsObject* find(ObjectAddress address) const { return eds_.find(address); }
+  [[nodiscard]] bool has_index(std::uint16_t index) const { return eds_.has_index(index); }
   void say(std::string pointer, std::string section, std::string message) {
     out_.push_back({std::move(pointer), std::move(section), std::move(message)});
   }
 
   void compare(const Object& object) {
     const Place* place = object.place(kCanopen);
-    if (place == nullptr) return;
+    if (place == nullptr || object.part) return;
     const std::string at = pointer_to(pointer_to(object.pointer, "at"), kCanopen);
     const EdsObject* known = find(place->address);
     if (known == nullptr)
       return say(at, section_of(place->address),
                  has_index(place->address.index) ? "the EDS has this index, but not this sub-index"
                                                  : "the EDS has no such object");
+    if (!known->unclear.empty()) return say(at, known->section, known->unclear);
     compare_type(object, place->type.value_or(object.type), *known);
     compare_access(object, *known);
     if (object.range) compare_range(pointer_to(object.pointer, "range"), *object.range, *known);
@@ -92,7 +87,7 @@ class Comparison {
 
   void compare_value(const std::string& name, std::int64_t raw, const std::string& at) {
     const Object* object = profile_.find(name, 0);
-    const Place* place = object == nullptr ? nullptr : object->place(kCanopen);
+    const Place* place = object == nullptr || object->part ? nullptr : object->place(kCanopen);
     const EdsObject* known = place == nullptr ? nullptr : find(place->address);
     if (known == nullptr) return;  // told with the object, or not on canopen
     if ((known->low && raw < *known->low) || (known->high && raw > *known->high))
@@ -100,11 +95,11 @@ class Comparison {
           fmt::format("{} is written, the limits are {} and {}", raw, limit_text(known->low), limit_text(known->high)));
   }
 
-  void compare_setup(const WriteSpec& write) {
-    if (!write.is_on(kCanopen)) return;
-    for (const ValueSpec& value : write.values)
+  void compare_setup(const JsonNode& write) {
+    if (!is_on(write, kCanopen)) return;
+    for (const WriteValue& value : values_in(profile_, write))
       if (const auto* raw = std::get_if<std::int64_t>(&value))
-        compare_value(write.object, *raw, pointer_to(write.pointer, "value"));
+        compare_value(write.text("write"), *raw, write.pointer("value"));
   }
 
   void compare_loss(const ProtocolSpec& protocol) {
@@ -112,9 +107,9 @@ class Comparison {
       compare_value(protocol.loss.object, protocol.loss.value, "/protocols/canopen/loss/value");
   }
 
-  void compare_tpdos(const CanopenSpec& canopen) {
+  void compare_tpdos(const model::CanopenProperties& canopen) {
     for (std::size_t i = 0; i < canopen.tpdos.size(); ++i) {
-      const CanopenSpec::Tpdo& tpdo = canopen.tpdos[i];
+      const model::TpdoProperties& tpdo = canopen.tpdos[i];
       const std::string at = pointer_to("/protocols/canopen/tpdo", i);
       const auto parameters = static_cast<std::uint16_t>(kFirstTpdo + tpdo.number - 1);
       const auto mapping = static_cast<std::uint16_t>(kFirstMapping + tpdo.number - 1);
@@ -127,13 +122,12 @@ class Comparison {
       if (tpdo.inhibit) needs(kInhibit, "inhibit_us");
       if (tpdo.event_ms) needs(kEventTimer, "event_ms");
       for (std::size_t k = 0; k < tpdo.map.size(); ++k)
-        compare_mapped(tpdo.map[k], pointer_to(pointer_to(at, "map"), k));
+        compare_mapped(profile_.objects[tpdo.map[k]], pointer_to(pointer_to(at, "map"), k));
     }
   }
 
-  void compare_mapped(const std::string& name, const std::string& at) {
-    const Object* object = profile_.named(name);
-    const Place* place = object == nullptr ? nullptr : object->place(kCanopen);
+  void compare_mapped(const Object& object, const std::string& at) {
+    const Place* place = object.place(kCanopen);
     const EdsObject* known = place == nullptr ? nullptr : find(place->address);
     if (known == nullptr) return;  // told with the object
     if (!known->mappable) return say(at, known->section, "is mapped here, PDOMapping is 0 in the EDS");
