@@ -131,6 +131,15 @@ std::string missing_commands(const model::AxisModel& axis) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::string shared_text(const model::AxisModel& axis, const model::DriveModel& drive) {
+  std::vector<AxisNumber> others;
+  for (const AxisSlot slot : axis.shares) others.push_back(drive.axes[slot].number);
+  return fmt::format(
+      "enable, disable, stops, fault reset and mode are one with axis {}: to enable this axis gives "
+      "torque to both, a stop of one stops and latches both, and both have one owner",
+      fmt::join(others, " and "));
+}
+
 /// How far the drive's own counter reaches before it wraps.
 std::string counter_text(const config::AxisConfig& config, const model::AxisModel& axis,
                          const model::DriveModel& drive) {
@@ -160,10 +169,12 @@ void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
   const auto& [config, axis, drive, budget, dds] = whole;
   out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
                      config.number * 100, config.number * 100 + 99);
+  if (drive.only_simulated) add_line(out, "profile", fmt::format("{}: {}", drive.profile, model::kOnlySimulated));
   add_line(out, "units", units_text(config) + counter_text(config, axis, drive));
   if (floats) add_line(out, "", float_text(config));
   add_lines(out, limit_lines(config, axis));
   add_lines(out, watch_lines(axis));
+  if (!axis.shares.empty()) add_line(out, "shared", shared_text(axis, drive));
   add_line(out, "not on it", fmt::format("quantities: {}", missing_quantities(axis)));
   add_line(out, "", fmt::format("commands: {}", missing_commands(axis)));
   if (config.inverted && axis.command(Command::home)) {

@@ -185,6 +185,13 @@ void plan_can(BusBudget& budget, const BusTiming& timing, const std::vector<mode
   budget.load_unsolicited = permille_of(unsolicited);
 }
 
+/// The write of a part goes behind a read of its whole, in one turn.
+bool any_parts(const std::vector<model::DriveModel>& drives) {
+  const auto is_written = [](const model::ObjectDef& object) { return object.is_part() && object.writable; };
+  return std::ranges::any_of(
+      drives, [&](const model::DriveModel& model) { return std::ranges::any_of(model.objects, is_written); });
+}
+
 }  // namespace
 
 BusBudget plan_bus(const BusTiming& timing, const std::vector<model::DriveModel>& drives) {
@@ -208,10 +215,11 @@ BusBudget plan_bus(const BusTiming& timing, const std::vector<model::DriveModel>
   if (!can) budget.load_unmapped = budget.load_answered;
   budget.cycle = stretched(timing.poll[0], budget.load_answered);
 
-  budget.stop_wait = budget.exchange + timing.min_gap + timing.begun;
+  const Duration before = any_parts(drives) ? budget.exchange + timing.min_gap : Duration{};
+  budget.stop_wait = before + budget.exchange + timing.min_gap + timing.begun;
   budget.command_wait = 2 * budget.stop_wait;
   // A drive that does not answer holds the line for its timeout; nothing may be sent while a late talker could collide.
-  budget.stop_wait_unresponsive = timing.timeout + std::max(timing.settle, timing.min_gap) + timing.begun;
+  budget.stop_wait_unresponsive = before + timing.timeout + std::max(timing.settle, timing.min_gap) + timing.begun;
   budget.command_wait_unresponsive = budget.stop_wait_unresponsive + budget.stop_wait;
   return budget;
 }

@@ -13,7 +13,7 @@ void read_constants(const JsonNode& node, DriveConfig& drive, ConfigFaults& faul
     if (const auto value = constant.rational()) {
       drive.constants.emplace(constant.key(), *value);
     } else if (!faults.within(constant.pointer())) {
-      faults.add(constant.pointer(), "is no decimal number: write it like 27.5 or \"27.5\", without an exponent");
+      faults.add(constant.pointer(), "is no exact number: write it like 27.5 or \"10000/60\", without an exponent");
     }
   }
 }

@@ -35,7 +35,8 @@ void warn_about_unit_ids(const Config& config, ConfigFaults& faults) {
 
 }  // namespace
 
-LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders, profile::Pipes pipes) {
+LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders, profile::Pipes pipes,
+                       OpenAsks open_asks) {
   ConfigFaults faults(file);
   LoadedConfig loaded;
   auto read = profile::load_json(file, loaded.config.read, pipes);
@@ -57,7 +58,7 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
     check_unique(loaded.config, faults);
     warn_without_effect(root, faults);
     warn_about_unit_ids(loaded.config, faults);
-    loaded.models = load_models(loaded.config, profile_folders, faults);
+    loaded.models = load_models(loaded.config, profile_folders, open_asks, faults);
     if (faults.faults().empty()) {
       settle_rtu_buses(loaded.config, loaded.models, faults);
       settle_can_buses(loaded.config, loaded.models, faults);

@@ -26,6 +26,7 @@ using LoadResult = std::variant<LoadedConfig, std::vector<ConfigFault>>;
 
 /// `profile_folders` are searched in their order for profiles that are given by name.
 [[nodiscard]] LoadResult load_config(const std::string& file, const std::vector<std::string>& profile_folders,
-                                     profile::Pipes pipes = profile::Pipes::refused);
+                                     profile::Pipes pipes = profile::Pipes::refused,
+                                     OpenAsks open_asks = OpenAsks::refused);
 
 }  // namespace axisgate::config

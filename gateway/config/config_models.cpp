@@ -121,10 +121,29 @@ void check_lease(const model::AxisModel& model, const AxisConfig& axis, ConfigFa
                          axisgate::text(action)));
 }
 
+void check_asks(const profile::LoadedProfile& loaded, DriveConfig& config, OpenAsks open_asks, ConfigFaults& faults) {
+  for (const profile::Ask& ask : loaded.profile.open_asks(config.constants)) {
+    config.open_before.insert(config.open_before.end(), ask.before.begin(), ask.before.end());
+    const std::string answer =
+        ask.of.starts_with('/')
+            ? fmt::format("write the answer at {} and take this entry out", ask.of)
+            : fmt::format("write \"constants\": {{\"{}\": ...}} into {} of {}", ask.of, config.pointer, faults.file());
+    const std::string before =
+        ask.before.empty() ? "" : fmt::format(", and no {} before it is answered", fmt::join(ask.before, ", no "));
+    const std::string open = fmt::format("open question{}: {} Once you know, {}", before, ask.question(), answer);
+    const profile::Written written = profile::written_at(loaded.written, ask.pointer);
+    if (ask.before.empty() || open_asks == OpenAsks::allowed)
+      faults.warn(config.pointer + "/profile", fmt::format("{}{}: {}", written.file, written.pointer, open));
+    else
+      faults.add(ConfigFault{written.file, written.pointer, open});
+  }
+}
+
 std::optional<model::DriveModel> load_model(const BusConfig& bus, DriveConfig& config, Profiles& profiles,
-                                            ConfigFaults& faults) {
+                                            OpenAsks open_asks, ConfigFaults& faults) {
   const profile::LoadedProfile* profile = profiles.find(config);
   if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
+  check_asks(*profile, config, open_asks, faults);
   config.profile_text = profile->text;
   const std::size_t motors = profile->profile.axes.size();
   if (config.axes.size() > motors) {
@@ -150,7 +169,7 @@ std::optional<model::DriveModel> load_model(const BusConfig& bus, DriveConfig& c
 }  // namespace
 
 std::vector<std::vector<model::DriveModel>> load_models(Config& config, const std::vector<std::string>& profile_folders,
-                                                        ConfigFaults& faults) {
+                                                        OpenAsks open_asks, ConfigFaults& faults) {
   std::vector<std::vector<model::DriveModel>> models;
   Profiles profiles(config.file, profile_folders, faults);
   for (BusConfig& bus : config.buses) {
@@ -158,7 +177,7 @@ std::vector<std::vector<model::DriveModel>> load_models(Config& config, const st
     if (faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for
     for (DriveConfig& drive : bus.drives) {
       if (faults.within(drive.pointer + "/profile") || drive.profile.empty()) continue;
-      if (auto model = load_model(bus, drive, profiles, faults)) drives.push_back(std::move(*model));
+      if (auto model = load_model(bus, drive, profiles, open_asks, faults)) drives.push_back(std::move(*model));
     }
   }
   for (profile::FileRead& each : profiles.read()) config.read.push_back(std::move(each));

@@ -43,7 +43,7 @@ void warn_without_effect(const JsonNode& root, ConfigFaults& faults);
 /// mistakes of their own are left out.
 [[nodiscard]] std::vector<std::vector<model::DriveModel>> load_models(Config& config,
                                                                       const std::vector<std::string>& profile_folders,
-                                                                      ConfigFaults& faults);
+                                                                      OpenAsks open_asks, ConfigFaults& faults);
 
 /// A timeout that nobody has given is what the longest exchange and the slowest drive need; one that is given must be
 /// longer than the exchange. `takes`: what `on_wire` is the time of, for the message.

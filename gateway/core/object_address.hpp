@@ -8,9 +8,12 @@
 
 namespace axisgate {
 
-/// CiA 301 index and sub-index on CANopen and Kinco's serial protocol; the register and 0 on Modbus RTU; index and sub
-/// on Keya's CAN; on Keya's serial protocols 0x2100 + query code and 0 for what is asked, 0x200D (on) and 0x2000
-/// (value) with the motor's number 1 or 2 for what is commanded.
+/// Modbus RTU: the table that a number is of, as ObjectAddress::sub has it.
+enum class ModbusTable : std::uint8_t { holding, input, coil, discrete };
+
+/// CiA 301 index and sub-index on CANopen and Kinco's serial protocol; the register and its table on Modbus RTU; index
+/// and sub on Keya's CAN; on Keya's serial protocols 0x2100 + query code and 0 for what is asked, 0x200D (on) and
+/// 0x2000 (value) with the motor's number 1 or 2 for what is commanded.
 struct ObjectAddress {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;

@@ -42,7 +42,20 @@ Rational Rational::reduced(Int128 numerator, Int128 denominator) {
   return out;
 }
 
-std::optional<Rational> Rational::parse(std::string_view decimal) {
+std::optional<Rational> Rational::parse(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  const std::optional<Rational> above = parse_decimal(text.substr(0, slash));
+  if (slash == std::string_view::npos) return above;
+  const std::optional<Rational> below = parse_decimal(text.substr(slash + 1));
+  if (!above || !below || below->numerator() == 0) return std::nullopt;
+  try {
+    return *above / *below;
+  } catch (const std::overflow_error&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Rational> Rational::parse_decimal(std::string_view decimal) {
   bool negative = false;
   if (!decimal.empty() && (decimal.front() == '-' || decimal.front() == '+')) {
     negative = decimal.front() == '-';
@@ -76,14 +89,24 @@ Rational operator/(const Rational& a, const Rational& b) {
                            static_cast<Int128>(a.denominator_) * b.numerator_);
 }
 
-std::optional<std::int64_t> Rational::scale(std::int64_t value) const {
-  const Int128 product = static_cast<Int128>(value) * numerator_;
-  Int128 quotient = product / denominator_;
-  const Int128 rest = product % denominator_;
+// `denominator` above 0.
+std::optional<std::int64_t> Rational::rounded(Int128 numerator, Int128 denominator) {
+  Int128 quotient = numerator / denominator;
+  const Int128 rest = numerator % denominator;
   const Int128 magnitude = rest < 0 ? -rest : rest;
-  if (magnitude * 2 >= denominator_) quotient += product < 0 ? -1 : 1;
+  if (magnitude >= denominator - magnitude) quotient += numerator < 0 ? -1 : 1;
   if (quotient > kMax || quotient < kMin) return std::nullopt;
   return static_cast<std::int64_t>(quotient);
+}
+
+std::optional<std::int64_t> Rational::scale(std::int64_t value) const {
+  return rounded(static_cast<Int128>(value) * numerator_, denominator_);
+}
+
+std::optional<std::int64_t> Rational::over(std::int64_t divisor) const {
+  if (divisor == 0) return std::nullopt;
+  const Int128 denominator = static_cast<Int128>(divisor) * denominator_;
+  return divisor < 0 ? rounded(-Int128{numerator_}, -denominator) : rounded(numerator_, denominator);
 }
 
 double Rational::to_double() const {

@@ -18,8 +18,9 @@ class Rational {
   /// `denominator` not 0. Throws std::overflow_error where lowest terms do not fit 64 bits (start-up only).
   Rational(std::int64_t numerator, std::int64_t denominator = 1);
 
-  /// "1.414", "-3", "0.5e3" is not taken: decimals only, as makers print them. No value where the text is none.
-  [[nodiscard]] static std::optional<Rational> parse(std::string_view decimal);
+  /// "1.414", "-3", and of two such numbers "10000/60"; "0.5e3" is not taken: as makers print them. No value where the
+  /// text is none, or 64 bits do not hold it.
+  [[nodiscard]] static std::optional<Rational> parse(std::string_view text);
 
   [[nodiscard]] std::int64_t numerator() const { return numerator_; }
   [[nodiscard]] std::int64_t denominator() const { return denominator_; }
@@ -31,10 +32,14 @@ class Rational {
 
   /// value * this, rounded half away from zero; no value where it does not fit 64 bits.
   [[nodiscard]] std::optional<std::int64_t> scale(std::int64_t value) const;
+  /// this / divisor, rounded in the same way; no value where the divisor is 0 either.
+  [[nodiscard]] std::optional<std::int64_t> over(std::int64_t divisor) const;
   [[nodiscard]] Rational inverse() const { return Rational(denominator_, numerator_); }
   [[nodiscard]] double to_double() const;
 
  private:
+  static std::optional<std::int64_t> rounded(Int128 numerator, Int128 denominator);
+  static std::optional<Rational> parse_decimal(std::string_view decimal);
   static Rational reduced(Int128 numerator, Int128 denominator);
   std::int64_t numerator_ = 0;
   std::int64_t denominator_ = 1;

@@ -10,59 +10,26 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gateway/core/numbers.hpp"
-#include "gateway/core/object_address.hpp"
 #include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 #include "gateway/image/capabilities.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/image/lease.hpp"
 #include "gateway/model/cia402.hpp"
+#include "gateway/model/drive_constant.hpp"
+#include "gateway/model/object_def.hpp"
 #include "gateway/model/watch_rules.hpp"
 
 namespace axisgate::model {
 
-/// Position in DriveModel::objects.
-using ObjectId = std::uint16_t;
-inline constexpr ObjectId kNoObject = 0xFFFF;
-inline constexpr std::size_t kMaxObjects = 1024;
 inline constexpr std::size_t kMaxSteps = 16;
 
 /// Poll classes of design section 5: 20, 100, 1000 ms by default, and once at bring-up (and after each write of it).
 enum class PollClass : std::uint8_t { fast, normal, slow, once };
-/// Whether a write wears out the drive's memory (profile key "nvm").
-enum class Nvm : std::uint8_t { no, unknown, yes };
-
-struct ObjectDef {
-  std::string name;         ///< "statusword", "A.velocity"
-  AxisSlot slot = kNoAxis;  ///< whose it is; kNoAxis: the whole drive's
-  ObjectAddress address;
-  std::uint8_t size = 2;  ///< bytes: 1, 2 or 4
-  bool is_signed = false;
-  Range printed{INT64_MIN, INT64_MAX};  ///< what its maker's sheet says that it takes
-  bool readable = true;
-  bool writable = false;
-  bool trigger = false;  ///< the write itself starts something: never skipped as unchanged, never repeated
-  /// Nobody has printed its width: read with Exchange::size 0 it is as wide as the drive answers, `size` at most.
-  bool any_width = false;
-  /// Another name of a speed, an enable or a motion: no client writes it past the limits, the latch and the owner.
-  bool mailbox_reads_only = false;
-  bool emulated = false;  ///< not in the drive: statusword, controlword and mode of a virtual axis (virtual_axis.hpp)
-  /// Objects at the same place in the drive: what is written to one is in all of them.
-  std::vector<ObjectId> aliases{};
-  /// Keya's serial control frame: written with all other objects of DriveModel::composed, never alone.
-  bool composed = false;
-  /// Of those: says that motor `slot` is to be on. Sent as 1 only for an axis that shows enabled, but by the write that
-  /// enables it: a motor that has tripped must not come back by a frame meant for its neighbour.
-  bool turns_on = false;
-  Nvm nvm = Nvm::no;
-  /// The low `size` bytes as the number they stand for.
-  [[nodiscard]] std::int64_t number(std::uint32_t raw) const;
-  /// Smallest and largest number of this width and sign.
-  [[nodiscard]] Range range() const;
-};
 
 /// A field of bits of an object, put somewhere in a composed quantity (digital_inputs, vendor_error).
 struct BitField {
@@ -73,34 +40,6 @@ struct BitField {
   bool inverted = false;
 };
 
-/// A number that must be read from the drive (profile: a constant's "first"): the product of objects and numbers of the
-/// first rule whose condition holds.
-struct DriveConstant {
-  struct Operand {
-    ObjectId object = kNoObject;  ///< kNoObject: `number`
-    Rational number{1};
-  };
-  struct Rule {
-    /// Without one: always. left compared with right.
-    bool conditional = false;
-    bool equal = true;  ///< "==", else "!="
-    Operand left, right;
-    std::vector<Operand> mul, div;
-  };
-  std::string name;
-  std::vector<Rule> rules;
-};
-
-/// What of a binding's scale and limits waits for constants that are read from the drive: raw_per_unit is made as
-/// fixed * product(mul) / product(div), and the limits again from it. Without any, the binding is whole from the start.
-struct ScaleRecipe {
-  Rational fixed{1};
-  std::vector<std::size_t> mul, div;    ///< positions in DriveModel::constants
-  Range raw;                            ///< what the object takes
-  Range allowed{INT64_MIN, INT64_MAX};  ///< register units: profile and axis limits, and the register's type
-  [[nodiscard]] bool waits() const { return !mul.empty() || !div.empty(); }
-};
-
 /// How one quantity of one axis is had from, and written to, this drive.
 struct Binding {
   Quantity quantity{};
@@ -108,6 +47,7 @@ struct Binding {
   std::vector<BitField> bits;
   /// raw = register value * raw_per_unit, sign of an inverted axis included.
   Rational raw_per_unit{1};
+  bool inverse = false;  ///< raw = raw_per_unit / register value: a ramp that the drive counts as a time; 0 is neither
   ScaleRecipe recipe{};
   bool scaled = true;  ///< false: `recipe` waits for the drive's constants; the quantity has no value until then
   /// Codes that the drive numbers otherwise (homing methods): register value -> what the drive calls it. Empty: as is.
@@ -230,22 +170,28 @@ struct HomingNeed {
   std::int64_t equals = 0;
 };
 
-struct AxisModel : Capabilities {
+/// What the configuration says of an axis, in register units (design 2).
+struct AxisSettings {
   AxisNumber number = 0;
   std::string name;
   bool inverted = false;
   Rational units_per_rev{10000};
-  std::optional<std::uint32_t> rated_speed;  ///< 0.001 rpm; where the profile has a constant for it
-  std::int64_t standstill_velocity = 1000;   ///< 0.001 rpm
-  /// velocity_actual may still show what was before a start, a stop or an end. Too short takes what turns for standing.
-  Duration velocity_lag = std::chrono::milliseconds(300);
+  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
+  std::optional<std::int16_t> homing_method;
   Duration homing_timeout = std::chrono::seconds(60);
-  std::optional<std::int16_t> homing_method;  ///< configured
-  bool configured_torque_limit = false;
   LeaseRules lease;
   WatchRules watch;
-  bool position_commanded = false;  ///< position_actual is what the drive has asked of its motor: nothing to watch
   Duration jog_timeout = std::chrono::milliseconds(500);
+  friend bool operator==(const AxisSettings&, const AxisSettings&) = default;
+};
+
+struct AxisModel : Capabilities, AxisSettings {
+  std::vector<AxisSlot> shares{};            ///< axes that are enabled, stopped and owned with it, and have its mode
+  std::optional<std::uint32_t> rated_speed;  ///< 0.001 rpm; where the profile has a constant for it
+  /// velocity_actual may still show what was before a start, a stop or an end. Too short takes what turns for standing.
+  Duration velocity_lag = std::chrono::milliseconds(300);
+  bool configured_torque_limit = false;
+  bool position_commanded = false;  ///< position_actual is what the drive has asked of its motor: nothing to watch
 
   std::vector<Binding> bindings;                          ///< supported quantities, in the order of their numbers
   std::array<std::int16_t, kQuantityCount> binding_of{};  ///< position in `bindings`, -1: not supported
@@ -278,6 +224,8 @@ struct AxisModel : Capabilities {
   std::uint16_t supported_modes = 0;
 
   [[nodiscard]] const Binding* binding(Quantity q) const;
+  /// How the drive counts positions, speeds and ramps is known: without that nothing is started.
+  [[nodiscard]] bool counts_known() const;
   /// In one of the drive's own modes it follows a target velocity at once.
   [[nodiscard]] bool is_own_velocity_mode(int in_force) const;
   /// Without this object nobody can say what the axis does: its statusword, or what a virtual axis makes it from.
@@ -349,10 +297,15 @@ struct UnsolicitedProperties {
 /// The gateway's own node-ID: in the drives' 1016h, and in no configuration of a drive.
 inline constexpr std::uint8_t kOwnNode = 127;
 
+/// What is reported of a profile that was never tried on its drive.
+inline constexpr std::string_view kOnlySimulated =
+    "numbers from an EDS or a public list, never tried on the real drive";
+
 struct DriveModel {
-  std::string profile;   ///< "kinco-jd"
-  std::string title;     ///< "Kinco JD"
-  std::string protocol;  ///< "kinco-serial"
+  std::string profile;          ///< "kinco-jd"
+  std::string title;            ///< "Kinco JD"
+  bool only_simulated = false;  ///< kOnlySimulated is to be reported
+  std::string protocol;         ///< "kinco-serial"
   std::uint8_t node = 1;
   std::vector<ObjectDef> objects;
   std::vector<DriveConstant> constants;  ///< those that are read from the drive
@@ -379,7 +332,14 @@ struct DriveModel {
                                       std::chrono::milliseconds(1000)};
 
   [[nodiscard]] const ObjectDef& object(ObjectId id) const { return objects[id]; }
-  [[nodiscard]] ObjectId find(ObjectAddress address) const;  ///< kNoObject where no object has it
+  /// kNoObject where no object has it. `mask`: of one of its parts.
+  [[nodiscard]] ObjectId find(ObjectAddress address, std::uint32_t mask = 0) const;
+  /// What goes over the bus for it: itself, or the whole that it is a part of.
+  [[nodiscard]] ObjectId whole(ObjectId id) const {
+    return id != kNoObject && objects[id].is_part() ? objects[id].part.whole : id;
+  }
+  /// It and its parts.
+  [[nodiscard]] std::vector<ObjectId> with_parts(ObjectId object) const;
   [[nodiscard]] bool needs_for_state(ObjectId object) const;
   /// Without this object nothing may move: what needs_for_state() says, and the position.
   [[nodiscard]] bool needs(ObjectId object) const;
@@ -388,14 +348,9 @@ struct DriveModel {
 [[nodiscard]] inline bool is_canopen(const DriveModel& model) { return model.protocol == "canopen"; }
 /// What must be read to know DriveModel::constants, each object once.
 [[nodiscard]] std::vector<ObjectId> constant_objects(const DriveModel& model);
-/// The number of a constant by what the drive holds (`number_of` gives no value for what is not known); none where a
-/// rule cannot be judged, none applies or the result fits no rational number.
-[[nodiscard]] std::optional<Rational> value_of(const DriveConstant& constant,
-                                               const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
-
 /// The setup list as it is due by what the drive holds: all of `setup`, then each of `factory_writes` whose object
 /// holds a number it takes the place of, and whose amount is known and fits; once written it is not due again.
-[[nodiscard]] std::vector<ObjectWrite> setup_writes(
-    const DriveModel& model, const std::function<std::optional<std::int64_t>(ObjectId)>& number_of);
+[[nodiscard]] std::vector<ObjectWrite> setup_writes(const DriveModel& model, const NumberOf& number_of,
+                                                    const IsAbsent& is_absent = {});
 
 }  // namespace axisgate::model

@@ -86,7 +86,13 @@ std::int64_t rounded_up(const Rational& value) { return saturated(ceiling_of(val
 
 std::int64_t rounded_down(const Rational& value) { return saturated(floor_of(value.numerator(), value.denominator())); }
 
-Range registers_within(const Range& raw, const Rational& raw_per_register) {
+Range registers_within(const Range& raw, const Rational& raw_per_register, bool inverse) {
+  if (inverse) {
+    const Int128 one = raw_per_register.denominator();
+    const auto by = [&](std::int64_t number) { return one * std::max<std::int64_t>(number, 1); };
+    return {saturated(ceiling_of(raw_per_register.numerator(), by(raw.max))),
+            saturated(floor_of(raw_per_register.numerator(), by(raw.min)))};
+  }
   Int128 numerator = raw_per_register.denominator();
   Int128 denominator = raw_per_register.numerator();
   assert(denominator != 0);
@@ -131,7 +137,8 @@ void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& 
   if (!scale) return;
   binding.raw_per_unit = *scale;
   if (row(binding.quantity).writable)
-    binding.limits = intersection(recipe.allowed, registers_within(intersection(recipe.raw, object.range()), *scale));
+    binding.limits = intersection(recipe.allowed,
+                                  registers_within(intersection(recipe.raw, object.range()), *scale, binding.inverse));
 }
 
 }  // namespace axisgate::model

@@ -24,10 +24,11 @@ enum class Base : std::uint8_t { rpm, rps, rpm_per_s, rps_per_s, rev, arms, perc
 /// A number, or the constant of this name.
 using Factor = std::variant<Rational, std::string>;
 
-/// raw = engineering * product(mul) / product(div).
+/// raw = engineering * product(mul) / product(div); inverse: product(mul) / product(div) / engineering.
 struct Unit {
   Base base{};
   std::vector<Factor> mul, div;
+  bool inverse = false;
 };
 
 /// "-3000 rpm", "rated_speed_rpm rpm".
@@ -51,8 +52,8 @@ using Constants = std::map<std::string, Rational, std::less<>>;
 
 [[nodiscard]] std::int64_t rounded_up(const Rational& value);
 [[nodiscard]] std::int64_t rounded_down(const Rational& value);
-/// The register values whose raw values lie in `raw`.
-[[nodiscard]] Range registers_within(const Range& raw, const Rational& raw_per_register);
+/// The register values whose raw values lie in `raw`; inverse: raw_per_register / register value, `raw` from 1 on.
+[[nodiscard]] Range registers_within(const Range& raw, const Rational& raw_per_register, bool inverse = false);
 [[nodiscard]] Range intersection(const Range& a, const Range& b);
 
 /// fixed * product(mul) / product(div); none where a constant that it waits for is not known or not above 0, or where

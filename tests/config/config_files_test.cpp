@@ -49,6 +49,25 @@ TEST(ConfigFiles, NoneOfTheMistakesWasLost) {
   EXPECT_EQ(test::bases_of(kFolder).size(), 6U);
 }
 
+const std::string kAsking = R"({"modbus_tcp": [{"listen": "127.0.0.1:1502"}], "buses": [{"name": "lift",
+  "adapter": "kinco-serial", "device": "/dev/ttyUSB0",
+  "drives": [{"profile": "valid/asking.json", "node": 1, "axes": [{"axis": 1}]}]}]})";
+
+/// Who finds it out beside the machine is only reminded; and what nothing that moves depends on is a remark to anybody.
+TEST(OpenQuestions, DoNotKeepWhoLooksForTheAnswerFromTheAxis) {
+  const test::OwnFolder folder;
+  fs::create_directory_symlink(kFolder.parent_path() / "profiles/valid", folder.path() / "valid");
+  const std::string file = folder.write("gateway.json", kAsking).string();
+  ASSERT_TRUE(std::holds_alternative<std::vector<ConfigFault>>(load_config(file, kProfiles)));
+  const LoadResult allowed = load_config(file, kProfiles, profile::Pipes::refused, OpenAsks::allowed);
+  ASSERT_TRUE(std::holds_alternative<LoadedConfig>(allowed));
+  const std::vector<std::string>& told = std::get<LoadedConfig>(allowed).warnings;
+  const auto of = [&](const std::string& words) { return ::testing::Contains(::testing::HasSubstr(words)).Times(1); };
+  EXPECT_THAT(told, of("/ask/0: open question, and no position, no velocity before it is answered: How many"));
+  EXPECT_THAT(told, of("/ask/1: open question: Does each write go into the drive's memory? Once you know, write the "
+                       "answer at /nvm and take this entry out"));
+}
+
 class ValidConfig : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ValidConfig, IsTakenAndPlannedBelowItsLinesLimit) {

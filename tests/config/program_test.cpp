@@ -179,12 +179,21 @@ TEST_F(Program, ScanHelpWarnsOfAGatewayOnTheSameBus) {
 }
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
-  for (const char* command : {"", "run ", "check ", "map ", "top ", "profile check ", "commission ", "scan ", "enable ",
-                              "move ", "jog ", "stop "}) {
+  for (const char* command :
+       {"", "run ", "check ", "map ", "top ", "profile check ", "profile from-eds ", "profile new ", "profile upgrade ",
+        "commission ", "scan ", "enable ", "move ", "jog ", "stop "}) {
     const Ended ended = run(std::string(command) + "--help");
     EXPECT_EQ(ended.code, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr(std::string("Example: axisgate ") + command)) << command;
   }
+}
+
+TEST_F(Program, AProfilesOpenQuestionsAreListed) {
+  const Ended ended = run("profile check " + test::source_path("tests/profiles/valid/asking.json"));
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\n  open          counts: How many counts does one turn have? (manual: 'encoder "
+                                   "resolution'); before it is answered no position, no velocity\n"));
+  EXPECT_THAT(ended.out, HasSubstr("\n  open          /nvm: Does each write go into the drive's memory?\n"));
 }
 
 TEST_F(Program, TheShippedProfilesAreFoundAndRight) {
@@ -220,9 +229,14 @@ TEST_F(Program, ComparesAProfileWithTheMakersEds) {
   EXPECT_EQ(ended.err, test::source_path("schemas/drives/cia402.json: /objects/statusword/at/canopen: ") + file +
                            " [6041]: the EDS has no such object\n");
 
+  write("other.eds", "stray\n" + test::content(eds));
+  ended = run("profile check " + profile + " --eds " + file);
+  EXPECT_EQ(ended.code, 0) << "an oddity is no contradiction\n" << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("remark        line 1: \"stray\" is neither [section] nor key=value: left out\n"));
+
   write("other.eds", "no EDS at all\n");
   const std::pair<std::string, std::string> cases[] = {
-      {profile + " --eds " + file, "other.eds: line 1: \"no EDS at all\" is neither [section] nor key=value"},
+      {profile + " --eds " + file, "other.eds: has no object: is this an EDS?"},
       {profile + " --eds " + (folder() / "none.eds").string(), "none.eds: cannot be read: No such file or directory"},
       {test::source_path("schemas/drives/id286pro.json") + " --eds " + eds.string(), "/protocols: has no canopen"},
   };
@@ -231,6 +245,71 @@ TEST_F(Program, ComparesAProfileWithTheMakersEds) {
     EXPECT_EQ(ended.code, 1) << arguments;
     EXPECT_THAT(ended.err, HasSubstr(told)) << arguments;
   }
+}
+
+TEST_F(Program, MakesAProfileOfAnEdsOnceAndPrintsWhatItAsks) {
+  const std::string eds = test::source_path("tests/profiles/eds/sparse.eds");
+  const std::string made = (folder() / "my-drive.json").string();
+  const std::string command = "profile from-eds " + eds + " --name my-drive -o " + folder().string();
+  Ended ended = run(command);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr(made + " is written\n"));
+  EXPECT_THAT(ended.out, HasSubstr("note          without homing_method (6098h): not in the EDS\n"));
+  EXPECT_THAT(ended.out, HasSubstr("question      position_units_per_rev: How many counts of the position"));
+  EXPECT_EQ(ended.err, "");
+  ended = run("profile check " + made + " --eds " + eds);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("nothing in it contradicts the profile"));
+
+  const std::string content = test::content(made);
+  ended = run(command);
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr(made + ": is there already, and is not written over"));
+  EXPECT_EQ(test::content(made), content);
+}
+
+TEST_F(Program, SaysWhyOfAFileNoProfileIsMade) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"from-eds " + write("drive.xdd", "<?xml version=\"1.0\"?>\n"), "drive.xdd: is an XDD or XDC (XML): ask"},
+      {"from-eds " + write("io.eds", "[1000]\nDataType=7\n"), "io.eds: 6040h (controlword): not in the EDS"},
+      {"new --modbus " + write("one.csv", "speed,1,u16,rw\n"), "one.csv: needs a row \"control\""},
+      {"new --modbus " + write("bad.csv", "speed,1,float\n"), "bad.csv: line 1: \"float\" is no type"},
+      {"upgrade " + write("list.json", "[]"), "list.json: is no profile: it has no name"},
+  };
+  for (const auto& [arguments, told] : cases) {
+    const Ended ended = run("profile " + arguments + " -o " + folder().string());
+    EXPECT_EQ(ended.code, 1) << arguments;
+    EXPECT_THAT(ended.err, HasSubstr(told)) << arguments;
+  }
+  EXPECT_EQ(run("profile new").code, 2);
+  EXPECT_THAT(run("profile from-eds x.eds --name My_Drive").err, HasSubstr("such as 'my-drive'"));
+}
+
+TEST_F(Program, MakesAFormOfATableOfRegisters) {
+  const std::string table = write("my drive.csv",
+                                  "name,address,type,access,unit,range\ncontrol,8192,u16,rw,,\nstatus,4096,u16,ro,,\n"
+                                  "fault,4097,u16,ro,,\ntarget_velocity,8193,i16,rw,rpm,-3000..3000\n");
+  Ended ended = run("profile new --modbus '" + table + "' -o " + folder().string());
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("question      /commands/quick_stop: Which number in control stops the motor"));
+  ended = run("profile check " + (folder() / "my-drive.json").string());
+  EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
+TEST_F(Program, CarriesAnOldProfileOver) {
+  std::string old = test::content(test::source_path("schemas/drives/leadshine-ld2-can.json"));
+  for (const auto& [from, to] :
+       {std::pair{std::string("\"name\": \"leadshine-ld2-can\""), std::string("\"name\": \"mine\"")},
+        {std::string("\"source\": \"2\","), std::string("\"source\": \"2\", \"fence\": [\"error_code\", \"mode\"],")}})
+    old.replace(old.find(from), from.size(), to);
+  fs::create_directories(folder() / "new");
+  const std::string command = "profile upgrade " + write("mine.json", old) + " -o " + (folder() / "new").string();
+  const Ended ended = run(command);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("note          /protocols/canopen/fence: is called resynchronisation\n"));
+  EXPECT_EQ(run("profile check " + (folder() / "new/mine.json").string()).code, 0);
+  EXPECT_THAT(run("profile upgrade " + (folder() / "new/mine.json").string()).out,
+              HasSubstr("nothing in it is of an earlier axisgate"));
 }
 
 TEST_F(Program, FindsItsProfilesWhereItIsInstalled) {

@@ -111,6 +111,10 @@ TEST(JsonFile, NumbersAreExactAsWritten) {
   EXPECT_EQ(rational_of(json::parse("0.1")), Rational(1, 10));
   EXPECT_EQ(rational_of(json::parse("\"1.414\"")), Rational(1414, 1000));
   EXPECT_EQ(rational_of(json::parse("65536")), Rational(65536));
+  EXPECT_EQ(rational_of(json::parse("\"10000/60\"")), Rational(500, 3));
+  EXPECT_EQ(rational_of(json::parse("\"-1.5/0.25\"")), Rational(-6));
+  for (const char* none : {"\"1/0\"", "\"1/\"", "\"/3\"", "\"1/2/3\"", "\"999999999999999999/0.0000000000000001\""})
+    EXPECT_EQ(rational_of(json::parse(none)), std::nullopt) << none;
   EXPECT_EQ(rational_of(json::parse("\"ten\"")), std::nullopt);
   EXPECT_EQ(rational_of(json::parse("true")), std::nullopt);
 }

@@ -174,9 +174,9 @@ TEST_F(Layers, NullSaysOfALossThatTheDriveHasNone) {
 TEST_F(Layers, ACheckOfEachNameIsOneCheckForEach) {
   const LoadedProfile loaded = load_profile(kValid + "/derived.json");
   std::vector<std::string> told_checks;
-  for (const CheckSpec& check : loaded.profile.checks) {
-    told_checks.push_back(check.name + ": " + check.bad.object + ": " + check.text);
-    for (const WriteSpec& write : check.remedy) EXPECT_EQ(write.object, check.bad.object);
+  for (const JsonNode& check : loaded.profile.section("checks").elements()) {
+    told_checks.push_back(check.text("name") + ": " + check.text("object") + ": " + check.text("text"));
+    for (const JsonNode& write : check["remedy"].elements()) EXPECT_EQ(write.text("write"), check.text("object"));
   }
   EXPECT_THAT(told_checks,
               ElementsAre("in1_enables: in1: IN1 enables the drive", "in2_enables: in2: IN2 enables the drive",

@@ -126,8 +126,9 @@ TEST(Leadshine, UnitsPerTurnFollowTheThreeObjectsThatCompeteForThem) {
                     {"encoder_increments", encoder},
                     {"gear_numerator", numerator},
                     {"gear_denominator", denominator}};
-    return model::value_of(model.constants[0],
-                           [&](model::ObjectId id) { return std::optional(held.at(model.object(id).name)); });
+    return model::evaluate(model.constants[0],
+                           [&](model::ObjectId id) { return std::optional(held.at(model.object(id).name)); })
+        .value;
   };
   EXPECT_EQ(counts(0, 10000, 131072, 3, 7), Rational(10000)) << "6091h has no effect";
   EXPECT_EQ(counts(4000, 10000, 131072, 3, 7), Rational(4000)) << "Pr0.08 outranks 6092h";

@@ -162,5 +162,29 @@ TEST_F(CanopenProfile, AWidthThatNobodyPrintedIsOnlyAskedForOnCanopen) {
   EXPECT_FALSE(plain.object(plain.find({0x6041, 0})).any_width);
 }
 
+TEST_F(CanopenProfile, AnIdentityIsOfItsVendorUnlessTheConfigurationSaysMore) {
+  profile_["identity"] = {{"vendor", "0x000000FB"}, {"product", {"0x63500000", "0x64500000"}}};
+  EXPECT_THAT(model().canopen.identity, ElementsAre(0xFBU, std::nullopt, std::nullopt, std::nullopt));
+  ResolveInput input = one_axis("canopen");
+  input.identity = {0xFBU, 0x64500000U, 7U, std::nullopt};
+  EXPECT_EQ(resolved(load(), input).canopen.identity, input.identity);
+  profile_.erase("identity");
+  EXPECT_FALSE(model().canopen.identity_given()) << "it names nobody";
+}
+
+TEST_F(CanopenProfile, AConfiguredIdentityThatItIsNotForIsRefused) {
+  profile_["identity"] = {{"vendor", 251}, {"product", {1, 2}}};
+  const auto told = [&](std::array<std::optional<std::uint32_t>, 4> identity) {
+    ResolveInput input = one_axis("canopen");
+    input.identity = identity;
+    return text(std::get<std::vector<Fault>>(resolve(load(), input)));
+  };
+  EXPECT_THAT(told({252U, {}, {}, {}}),
+              HasSubstr("/identity/vendor: is 0x000000fc, but profile \"canopen-only\" is for 0x000000fb: for this "
+                        "drive take its own maker's profile, \"cia402-generic\", or one of yours"));
+  EXPECT_THAT(told({251U, 3U, {}, {}}), HasSubstr("/identity/product: is 0x00000003, but profile \"canopen-only\" is "
+                                                  "for 0x00000001, 0x00000002: "));
+}
+
 }  // namespace
 }  // namespace axisgate::profile

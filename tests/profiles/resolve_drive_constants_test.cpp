@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "gateway/model/scale.hpp"
+#include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::profile {
@@ -24,10 +25,12 @@ model::DriveModel applied(model::DriveModel model, const Known& constants) {
 
 /// What `counts` is where the drive holds these numbers.
 std::optional<Rational> counts_of(const model::DriveModel& model, std::map<std::string, std::int64_t> held) {
-  return model::value_of(model.constants.at(0), [&](model::ObjectId id) -> std::optional<std::int64_t> {
-    const auto at = held.find(model.object(id).name);
-    return at == held.end() ? std::nullopt : std::optional(at->second);
-  });
+  return model::evaluate(model.constants.at(0),
+                         [&](model::ObjectId id) -> std::optional<std::int64_t> {
+                           const auto at = held.find(model.object(id).name);
+                           return at == held.end() ? std::nullopt : std::optional(at->second);
+                         })
+      .value;
 }
 
 TEST(DriveConstants, AreListedOnceInTheOrderOfNeed) {
@@ -135,6 +138,65 @@ TEST(DriveConstants, AScaleBeyondSixtyFourBitsIsNoneAndNoCrash) {
   EXPECT_FALSE(binding(model, Quantity::target_position).scaled);
   EXPECT_FALSE(binding(model, Quantity::position_actual).scaled);
   EXPECT_TRUE(binding(model, Quantity::target_velocity).scaled);
+}
+
+/// The drive of valid/virtual.json with other rules for its constant `counts`.
+class Rules : public ::testing::Test {
+ protected:
+  model::DriveModel with(const std::string& rules) {
+    auto profile = nlohmann::json::parse(test::content(valid_file("virtual")));
+    profile["constants"]["counts"]["first"] = nlohmann::json::parse(rules);
+    return resolved(load_profile(folder_.write("virtual.json", profile.dump()).string()), one_axis("modbus-rtu"));
+  }
+  /// Where it holds these, and has refused all others.
+  static model::Evaluated found(const model::DriveModel& model, const std::map<std::string, std::int64_t>& held) {
+    const auto name = [&](model::ObjectId id) { return model.object(id).name; };
+    return model::evaluate(
+        model.constants.at(0),
+        [&](model::ObjectId id) {
+          const auto at = held.find(name(id));
+          return at == held.end() ? std::nullopt : std::optional(at->second);
+        },
+        [&](model::ObjectId id) { return !held.contains(name(id)); });
+  }
+  const test::OwnFolder folder_;
+};
+
+TEST_F(Rules, TakeAnotherObjectWhereTheFirstIsNotThere) {
+  const model::DriveModel model = with(R"([{"if": ["resolution", "present"], "value": ["resolution"]},
+                                           {"value": ["lines", "*", 4]}])");
+  EXPECT_EQ(found(model, {{"resolution", 4096}, {"lines", 9}}).value, Rational(4096));
+  EXPECT_EQ(found(model, {{"lines", 100}}).value, Rational(400));
+  EXPECT_EQ(model::evaluate(model.constants[0], [](model::ObjectId) { return std::nullopt; }).why,
+            model::Evaluated::Why::not_read)
+      << "whether it is there nobody knows yet";
+}
+
+TEST_F(Rules, OfSeveralConditionsTheLaterOnesWaitForThoseBefore) {
+  const model::DriveModel model = with(R"([{"if": [["resolution", "present"], ["resolution", "==", 7]], "value": [70]},
+                                           {"if": ["resolution", "present"], "value": "unknown"},
+                                           {"value": ["lines"]}])");
+  EXPECT_EQ(found(model, {{"resolution", 7}, {"lines", 9}}).value, Rational(70));
+  EXPECT_EQ(found(model, {{"resolution", 8}, {"lines", 9}}).why, model::Evaluated::Why::no_rule);
+  EXPECT_EQ(found(model, {{"lines", 9}}).value, Rational(9)) << "what is not there is compared with nothing";
+}
+
+TEST_F(Rules, ThatNeedAnObjectWhichWasRefusedGiveNoValueAndNameIt) {
+  const model::DriveModel model = with(R"([{"if": ["gear", "==", 1], "value": ["lines"]}, {"value": "unknown"}])");
+  const model::Evaluated by_condition = found(model, {{"lines", 9}});
+  EXPECT_EQ(by_condition.value, std::nullopt);
+  EXPECT_EQ(by_condition.why, model::Evaluated::Why::absent);
+  EXPECT_EQ(model.object(by_condition.object).name, "gear");
+  const model::Evaluated by_value = found(model, {{"gear", 1}});
+  EXPECT_EQ(by_value.why, model::Evaluated::Why::absent);
+  EXPECT_EQ(model.object(by_value.object).name, "lines");
+}
+
+TEST_F(Rules, GiveNoValueBeyondTheConstantsOwnRange) {
+  const model::DriveModel model = with(R"([{"value": ["lines", "*", "10000/60"]}])");
+  EXPECT_EQ(found(model, {{"lines", 3}}).value, Rational(500));
+  for (const std::int64_t lines : {0, 6001})
+    EXPECT_EQ(found(model, {{"lines", lines}}).why, model::Evaluated::Why::unusable) << "1 to 1000000";
 }
 
 }  // namespace

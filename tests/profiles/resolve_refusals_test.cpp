@@ -77,6 +77,23 @@ TEST(Refusals, AProfileWithMistakesIsNotResolved) {
   EXPECT_TRUE(std::holds_alternative<std::vector<Fault>>(resolve(loaded, one_axis())));
 }
 
+TEST(Refusals, AMotorThatIsEnabledWithAnotherNeedsItsAxisToo) {
+  const std::vector<Fault> faults = refused(valid_file("shared-pair"), one_axis("canopen"));
+  ASSERT_EQ(faults.size(), 1U) << text(faults);
+  EXPECT_EQ(faults[0].pointer, "/axes");
+  EXPECT_THAT(faults[0].message, HasSubstr("motor B is enabled and stopped with the others"));
+}
+
+TEST(Refusals, AxesWithOneOwnerHaveOneLease) {
+  ResolveInput input = one_axis("canopen");
+  input.axes.push_back(input.axes.front());
+  EXPECT_EQ(resolved(valid_file("shared-pair"), input).axes[0].shares, std::vector<AxisSlot>{1});
+  input.axes[1].lease.timeout = std::chrono::seconds(9);
+  const std::vector<Fault> faults = refused(valid_file("shared-pair"), input);
+  ASSERT_EQ(faults.size(), 1U) << text(faults);
+  EXPECT_EQ(faults[0].pointer, "/axes/1/lease");
+}
+
 TEST(Refusals, UnitsBeyondSixtyFourBitsAreAFaultAndNoCrash) {
   ResolveInput input = kinco_axis();
   input.constants["encoder_counts_per_rev"] = Rational(16777213);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Units of an axis: units per revolution, inversion, torque by rated current, composed bits.
+#include "gateway/model/scale.hpp"
+#include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
 namespace axisgate::profile {
@@ -89,6 +91,49 @@ TEST(ResolvedScale, BindingsAreInTheOrderOfTheQuantitiesAndFoundByNumber) {
   EXPECT_EQ(seen, axis.supported);
   EXPECT_EQ(axis.binding(Quantity::motor_temperature), nullptr);
   EXPECT_EQ(axis.binding(Quantity::dc_voltage), nullptr) << "the MD manual gives no object";
+}
+
+/// A drive whose ramp is a time, in ms to 1000 rpm.
+class InverseRamp : public ::testing::Test {
+ protected:
+  model::DriveModel with(const nlohmann::json& unit, const ResolveInput& input = one_axis("modbus-rtu")) {
+    auto profile = nlohmann::json::parse(test::content(valid_file("virtual")));
+    profile["units"]["ramp"] = unit;
+    if (unit["mul"][1].is_number())  // else it cannot be known beforehand
+      profile["setup"] = {{{"write", "ramp"}, {"value", "500 rpm/s"}, {"why", "to be sure of it"}}};
+    return resolved(load_profile(folder_.write("virtual.json", profile.dump()).string()), input);
+  }
+  const nlohmann::json unit_{{"base", "rpm/s"}, {"mul", {1000, 1000}}, {"inverse", true}};
+  const test::OwnFolder folder_;
+};
+
+TEST_F(InverseRamp, IsLongWhereTheAccelerationIsSmall) {
+  const model::DriveModel model = with(unit_);
+  const model::Binding& ramp = binding(model, Quantity::profile_acceleration);
+  EXPECT_EQ(sent(model, Quantity::profile_acceleration, 5'000), 2000) << "500.0 rpm/s";
+  EXPECT_EQ(sent(model, Quantity::profile_acceleration, 30'000), 333);
+  EXPECT_EQ(ramp.to_register(2000), 5'000);
+  EXPECT_EQ(ramp.to_register(333), 30'030);
+  EXPECT_EQ(ramp.to_register(0), std::nullopt) << "no ramp at all has no number";
+  EXPECT_EQ(sent(model, Quantity::profile_acceleration, 0), std::nullopt);
+  EXPECT_EQ(model.setup.at(0).raw, 2000);
+}
+
+TEST_F(InverseRamp, IsNeverSteeperThanTheLimit) {
+  ResolveInput input = one_axis("modbus-rtu");
+  input.axes[0].limits.acceleration = 29'990;
+  const model::DriveModel model = with(unit_, input);
+  EXPECT_EQ(binding(model, Quantity::profile_acceleration).limits, (Range{153, 29'990})) << "65535 ms at the most";
+  EXPECT_EQ(sent(model, Quantity::profile_acceleration, 29'990), 334) << "333 ms would be steeper";
+}
+
+TEST_F(InverseRamp, MayWaitForAConstantOfTheDrive) {
+  model::DriveModel model = with({{"base", "rpm/s"}, {"mul", {1000, "counts"}}, {"inverse", true}});
+  model::Binding ramp = binding(model, Quantity::profile_acceleration);
+  EXPECT_EQ(ramp.to_register(2000), std::nullopt);
+  model::apply_recipe(ramp, {Rational(3000)}, model.object(ramp.object));
+  EXPECT_EQ(ramp.to_register(2000), 15'000) << "ms to 3000 rpm";
+  EXPECT_EQ(ramp.limits.min, 458);
 }
 
 }  // namespace

@@ -90,6 +90,15 @@ std::vector<std::string> JsonNode::names(std::string_view key) const {
   return out;
 }
 
+std::vector<std::int64_t> JsonNode::wholes(std::string_view key) const {
+  const JsonNode node = (*this)[key];
+  if (const std::optional<std::int64_t> one = node.whole()) return {*one};
+  std::vector<std::int64_t> out;
+  for (const JsonNode& entry : node.elements())
+    if (const std::optional<std::int64_t> one = entry.whole()) out.push_back(*one);
+  return out;
+}
+
 bool JsonNode::flag(std::string_view key, bool otherwise) const {
   const JsonNode node = (*this)[key];
   return node.json_->is_boolean() ? node.json_->get<bool>() : otherwise;

@@ -56,9 +56,11 @@ class JsonNode {
   [[nodiscard]] std::optional<std::string> string(std::string_view key) const;
   /// One text, or those of an array.
   [[nodiscard]] std::vector<std::string> names(std::string_view key) const;
+  /// The same of whole numbers.
+  [[nodiscard]] std::vector<std::int64_t> wholes(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key, bool otherwise) const;
   [[nodiscard]] Duration milliseconds(std::string_view key, Duration otherwise) const;
-  /// A number or a decimal string, exactly as it is written.
+  /// A number, a decimal string or a fraction, exactly as it is written.
   [[nodiscard]] std::optional<Rational> rational() const;
 
  private:

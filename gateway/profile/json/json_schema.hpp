@@ -63,7 +63,8 @@ enum class Pipes : std::uint8_t { refused, allowed };
 [[nodiscard]] std::string pointer_to(std::string_view parent, std::string_view key);
 [[nodiscard]] std::string pointer_to(std::string_view parent, std::size_t index);
 
-/// An exact number: a JSON integer, a decimal as it was written (27.5), or a decimal string ("1.414").
+/// An exact number: a JSON integer, a decimal as it was written (27.5), a decimal string ("1.414"), or a
+/// fraction ("10000/60").
 [[nodiscard]] std::optional<Rational> rational_of(const nlohmann::json& value);
 
 }  // namespace axisgate::profile

@@ -1,33 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// A drive profile as it was read: typed, named, still without a configuration. docs: schemas/README.md.
-// Promises that names refer to what exists and numbers fit, where load_profile() found no fault.
-// Never holds JSON, and never says what a configured drive does: that is the resolved model (model.hpp).
+// A drive profile as it was read, still without a configuration. docs: schemas/README.md.
+// Promises that names refer to what exists and numbers fit, where load_profile() found no fault. What only a configured
+// drive makes anything of (steps, conditions, writes) stays as it is written: a JsonNode that was judged.
+// Never says what a configured drive does: that is the resolved model (model.hpp).
 #pragma once
 
+#include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "gateway/model/model.hpp"
 #include "gateway/model/scale.hpp"
+#include "gateway/profile/json/json_node.hpp"
 
 namespace axisgate::profile {
 
 struct Constant {
-  /// Under "first": the product that the constant is, if its condition holds. Names are objects or other constants.
-  struct Rule {
-    bool conditional = false;
-    bool equal = true;
-    model::Factor left, right;
-    std::vector<model::Factor> mul, div;
-  };
   std::optional<Rational> standard;  ///< key "default"
   std::optional<Rational> min, max;
   bool required = false;
   bool from_drive = false;  ///< key "first": read from the drive at bring-up
-  std::vector<Rule> rules;
   std::string text;
 };
 
@@ -44,8 +41,14 @@ struct Place {
   bool composed = false;     ///< keya-rs232, keya-rs485: a field of the one control frame
   bool turns_on = false;     ///< of those: says that its motor is to be on
   bool unsolicited = false;  ///< keya-can: in a frame that the drive sends by itself; nothing asks for it
-  std::optional<DataType> type;
+  std::optional<DataType> type{};
   bool derived = false;  ///< follows from a rule of the manual's table, not printed
+};
+
+/// Bits of another object that stand for an object of their own.
+struct PartSpec {
+  std::string of;
+  std::uint8_t from = 0, count = 0;
 };
 
 struct Object {
@@ -61,7 +64,8 @@ struct Object {
   std::string unit;
   std::optional<Range> range;  ///< raw
   std::string alias_of;
-  std::map<std::string, Place, std::less<>> places;  ///< by protocol
+  std::optional<PartSpec> part{};
+  std::map<std::string, Place, std::less<>> places;  ///< by protocol; of a part the whole's
   std::string pointer;
   [[nodiscard]] Range numbers() const;  ///< of its type and range together
   [[nodiscard]] DataType type_at(const Place& place) const { return place.type.value_or(type); }
@@ -88,80 +92,47 @@ struct QuantitySpec {
   [[nodiscard]] const std::string& unit_of(const Object& object) const;
 };
 
-struct ConditionSpec {
-  std::string object;
-  std::uint32_t mask = 0;
-  model::Condition::Test test{};
-  std::vector<std::int64_t> values;
-  /// Checks: compared with this constant of the configuration, times so many; empty: with `values`.
-  std::string constant;
-  std::int64_t times = 1;
-};
+struct Profile;
 
 /// Register 78: the position that command set_position asks for.
 struct SetPositionValue {};
 
-using ValueSpec = std::variant<std::int64_t, model::Amount, Quantity, SetPositionValue>;
+/// What a write gives its object; nothing where that is no value.
+using WriteValue = std::variant<std::monostate, std::int64_t, model::Amount, Quantity, SetPositionValue>;
+[[nodiscard]] WriteValue value_in(const JsonNode& node);
+/// "3000 rpm"; nothing where it has another form or an unknown unit.
+[[nodiscard]] std::optional<model::Amount> amount_in(const JsonNode& node);
+/// A condition as it is written, without its object; `values` is empty where it is compared with a constant.
+[[nodiscard]] model::Condition condition_in(const JsonNode& node);
+/// The conditions of a constant's rule: "if" is one, or a list of them.
+[[nodiscard]] std::vector<JsonNode> conditions_of(const JsonNode& rule);
+/// What {"A": 4, "B": 6} says of one axis; what is said of all of them at once.
+[[nodiscard]] JsonNode of_axis(const JsonNode& node, const std::string& axis);
+/// What a step or another write gives its object: of each axis, and nothing of what is no value.
+[[nodiscard]] std::vector<WriteValue> values_in(const Profile& profile, const JsonNode& write);
+/// Key "on": every protocol where nothing is said.
+[[nodiscard]] bool is_on(const JsonNode& node, std::string_view protocol);
 
-struct StepSpec {
-  model::Step::Verb verb{};
-  std::string object;
-  std::vector<ValueSpec> values;  ///< of a write: one for all axes, or one for each
-  ConditionSpec until;
-  Duration limit{};
-  bool optional = false;
-  Errc otherwise = Errc::state_unsuitable;
-  std::string pointer;
-};
-
-struct CommandSpec {
-  struct Variant {
-    std::vector<std::int16_t> modes;
-    std::vector<StepSpec> steps;
-  };
+/// An entry of section "commands".
+struct CommandEntry {
   Command command{};
   std::string protocol;  ///< empty: every one without an override
-  std::vector<Variant> variants;
-  std::vector<StepSpec> steps;
-  bool quick_stop_otherwise = false;
-  bool zero_only = false;
-  bool repeat_on_change = false;
-  bool as_absolute = false;  ///< move_relative: the gateway carries it out as an absolute move
-  std::string pointer;
+  JsonNode node;
+  [[nodiscard]] const std::string& pointer() const { return node.pointer(); }
 };
+/// Calls `check(step)` for each write of a command, whatever the mode.
+template <class Check>
+void each_write(const CommandEntry& command, Check&& check) {
+  const auto writes = [&](const JsonNode& owner) {
+    for (const JsonNode& step : owner["steps"].elements())
+      if (step.has("write")) check(step);
+  };
+  writes(command.node);
+  for (const JsonNode& variant : command.node["variants"].elements()) writes(variant);
+}
 
-struct WriteSpec {
-  std::string object;
-  std::vector<ValueSpec> values;
-  std::vector<std::int64_t> instead_of;  ///< setup: only where the object holds one of these; empty: always
-  std::vector<std::string> on;           ///< protocols; empty: all
-  std::string why;
-  std::string pointer;
-  [[nodiscard]] bool is_on(std::string_view protocol) const;
-};
-
-struct CheckSpec {
-  std::string name;
-  ConditionSpec bad;
-  AxisAlarm alarm{};
-  std::string text;
-  std::vector<WriteSpec> remedy;
-  std::string pointer;
-};
-
-struct AlarmSpec {
-  std::uint8_t word = 0;
-  std::optional<std::uint8_t> bit;
-  std::optional<std::uint32_t> value;
-  std::uint16_t code = 0;
-  std::string text, remedy;
-};
-
-/// A read that may stand as a resynchronisation read.
-struct ResyncSpec {
-  std::string name;                  ///< an object
-  std::vector<std::uint8_t> counts;  ///< modbus-rtu: registers
-};
+/// Stands among the fault words for the error code of the drive's newest EMCY (canopen).
+inline constexpr std::string_view kEmergencyWord = "emcy";
 
 /// How the drive itself notices a dead gateway.
 struct LossSpec {
@@ -174,82 +145,44 @@ struct LossSpec {
   std::string text;
 };
 
-struct CanopenSpec {
-  struct Tpdo {
-    std::uint8_t number = 1;
-    std::vector<std::string> map;  ///< full names
-    std::uint8_t type = 255;
-    std::optional<std::uint16_t> inhibit;  ///< as the drive counts
-    Duration inhibit_time{};
-    std::optional<std::uint16_t> event_ms;
-  };
-  Duration heartbeat{};
-  Duration guard_time{};
-  std::uint8_t life_factor = 3;
-  std::string guard_time_object, life_factor_object;  ///< 100Ch and 100Dh; empty: not written
-  Duration sync{};
-  Duration boot{};
-  bool sdo_block = false;
-  Duration confirm{};
-  std::vector<Tpdo> tpdos;
-  std::vector<std::uint8_t> unused_tpdos;
-};
-
 struct ProtocolSpec {
-  std::vector<ResyncSpec> resync;
   Duration worst_reply{};
   Duration timeout{};
   LossSpec loss;
-  Duration heartbeat{};      ///< keya-can only: the drive sends its own so often; 0: not stated
-  model::RtuProperties rtu;  ///< modbus-rtu only
-  CanopenSpec canopen;       ///< canopen only
+  Duration heartbeat{};              ///< keya-can only: the drive sends its own so often; 0: not stated
+  model::RtuProperties rtu;          ///< modbus-rtu only
+  model::CanopenProperties canopen;  ///< canopen only; its maps hold positions in Profile::objects
   [[nodiscard]] bool stops_by_itself() const { return loss.by != LossSpec::By::nothing; }
 };
 
 struct StateSpec {
   bool is_virtual = false;
-  bool setpoint_acknowledge = true;
-  std::optional<std::uint16_t> follow_bits;  ///< none: all that CiA 402 leaves to the makers
-  std::vector<std::int16_t> velocity_modes;
-  std::optional<Duration> velocity_lag;
-  std::vector<std::string> zero_before_enable;
-  std::optional<ConditionSpec> enabled, fault, moving, limit;
-  std::optional<ConditionSpec> reached;
-  std::int64_t within = 0;  ///< of position_actual, as the drive counts
-  bool gate_only = false;
   bool quick_stop_energised = true;
+  model::Cia402Properties cia402;
+  std::map<std::int16_t, std::int64_t> homing_methods;  ///< CiA 402 method -> what the drive calls it
 };
 
-/// A parameter that only the maker's tool can reach decides a motor's mode; the configuration says what it was set to.
-struct ConfiguredModeSpec {
-  std::vector<std::string> constants;  ///< one for each motor; its number is what the drive calls the mode
-  std::vector<std::string> fixed_on;   ///< protocols on which the motor has this mode and no other
-  std::vector<std::int16_t> only;      ///< elsewhere: modes that can be had only where they are the configured one
-  bool needs_disabled = false;         ///< a mode takes effect by an enable
-  [[nodiscard]] bool is_fixed_on(std::string_view protocol) const;
+/// Whose drive it is: what 1018h sub 1 to 3 (vendor, product, revision) may say; an empty list: anything.
+struct IdentitySpec {
+  std::array<std::vector<std::uint32_t>, 3> numbers;
+  /// The first of them that `found` says otherwise; none: nothing is said against it.
+  [[nodiscard]] std::optional<std::size_t> other_in(const std::array<std::optional<std::uint32_t>, 4>& found) const;
 };
 
-/// What is repeated for a drive that disables itself when it hears no command.
-struct KeepAliveSpec {
-  Duration every{};
-  std::map<std::int16_t, std::string> resend;  ///< mode -> set-point object
-  std::vector<std::string> on;                 ///< protocols; empty: all
-  [[nodiscard]] bool is_on(std::string_view protocol) const;
-};
-
-struct HomingSpec {
-  struct Need {
-    std::vector<std::string> any_of;
-    std::int64_t equals = 0;
-  };
-  std::map<std::int16_t, std::int64_t> methods;  ///< CiA 402 method -> what the drive calls it
-  std::map<std::int16_t, Need> needs;
-  std::optional<ConditionSpec> homed, failed, homed_at;
-  std::optional<std::int16_t> in_mode;  ///< homed and failed mean that in this mode alone
+/// A question that the profile leaves open.
+struct Ask {
+  std::string of;                   ///< a constant, or "/commands/save_parameters"
+  std::string text, where;          ///< the question, and where such a thing stands; `where` may be empty
+  std::vector<std::string> before;  ///< what must not be while it is open; empty: nothing that moves depends on it
+  std::string pointer;
+  /// "How many ...? (manual: ...)"
+  [[nodiscard]] std::string question() const { return where.empty() ? text : text + " (" + where + ")"; }
 };
 
 struct Profile {
   std::string name, title;
+  std::optional<IdentitySpec> identity;  ///< none: it names nobody
+  bool only_simulated = false;           ///< key "tried": its numbers were never tried on the real drive
   model::Nvm nvm = model::Nvm::unknown;  ///< of objects that do not say it, and of those that are not listed
   std::vector<std::string> axes;         ///< "A", "B": one for each motor
   std::map<std::string, Constant, std::less<>> constants;
@@ -259,20 +192,26 @@ struct Profile {
   std::vector<QuantitySpec> quantities;
   StateSpec state;
   std::map<std::int16_t, std::int64_t> modes;
-  std::optional<ConfiguredModeSpec> configured_mode;
-  HomingSpec homing;
-  std::vector<CommandSpec> commands;
-  std::vector<WriteSpec> setup;
-  std::vector<CheckSpec> checks;
-  std::vector<std::string> fault_words;
-  std::vector<AlarmSpec> alarms;
-  std::optional<KeepAliveSpec> keepalive;
+  std::vector<CommandEntry> commands;
+  std::vector<model::AlarmRow> alarms;
+  std::vector<Ask> asks;
+  std::shared_ptr<const nlohmann::json> document;  ///< null: nothing was read
 
+  /// As it is written, for what only a configured drive decides.
+  [[nodiscard]] JsonNode section(std::string_view key) const;
   /// The object that `name` means for this motor: its own ("A.speed") before the drive's ("speed").
   [[nodiscard]] const Object* find(std::string_view object, AxisSlot motor) const;
   /// The object of exactly this name.
   [[nodiscard]] const Object* named(std::string_view object) const;
   [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
+  /// Those of `asks` that nobody has answered, with these constants of a configuration.
+  [[nodiscard]] std::vector<Ask> open_asks(const std::map<std::string, Rational>& configured) const;
+  /// Motors that are enabled, stopped and reset as one, in the order of `axes`.
+  [[nodiscard]] std::vector<AxisSlot> shared() const;
+  /// The names under "alarms": objects, or kEmergencyWord.
+  [[nodiscard]] std::vector<std::string> fault_words() const { return section("alarms").names("words"); }
+  /// On this protocol the drive says by EMCY what has failed, and the profile goes by that.
+  [[nodiscard]] bool has_emergency_word(std::string_view protocol) const;
 };
 
 }  // namespace axisgate::profile

@@ -9,7 +9,6 @@ namespace axisgate::profile {
 
 namespace {
 
-constexpr std::int64_t kDefaultConfirmMs = 1000;
 constexpr std::int64_t kDefaultInhibitUnitUs = 100;  // CiA 301 section 7.5.2.37
 constexpr std::int64_t kLargestU16 = 0xFFFF;
 constexpr std::size_t kPdoBytes = 8;
@@ -17,14 +16,7 @@ constexpr std::int64_t kLastSynchronousType = 240;
 constexpr std::int64_t kFirstEventType = 254;
 constexpr ObjectAddress kProducerHeartbeat{0x1017, 0};
 
-void read_guard(const JsonNode& guard, CanopenSpec& out) {
-  out.guard_time = milliseconds(guard.whole("time_ms", 0));
-  out.life_factor = static_cast<std::uint8_t>(guard.whole("life_factor", out.life_factor));
-  out.guard_time_object = guard.text("time_object");
-  out.life_factor_object = guard.text("factor_object");
-}
-
-void read_inhibit(Reading& reading, const JsonNode& node, CanopenSpec::Tpdo& out) {
+void read_inhibit(Reading& reading, const JsonNode& node, model::TpdoProperties& out) {
   if (!node.has("inhibit_us")) return;
   const std::int64_t unit = std::max<std::int64_t>(node.whole("inhibit_unit_us", kDefaultInhibitUnitUs), 1);
   const std::int64_t time = node.whole("inhibit_us", 0);
@@ -38,42 +30,19 @@ void read_inhibit(Reading& reading, const JsonNode& node, CanopenSpec::Tpdo& out
   out.inhibit_time = std::chrono::microseconds(raw * unit);
 }
 
-void read_tpdo(Reading& reading, const JsonNode& node, CanopenSpec& out) {
-  CanopenSpec::Tpdo tpdo;
-  tpdo.number = static_cast<std::uint8_t>(node.whole("n", 0));
-  tpdo.map = node.names("map");
-  const std::int64_t type = node.whole("type", tpdo.type);
-  tpdo.type = static_cast<std::uint8_t>(type);
-  if (type > kLastSynchronousType && type < kFirstEventType)
-    reading.fault(node.pointer("type"), "{} is reserved, or sent on a remote frame only: use 0 to 240, 254 or 255",
-                  type);
-  else if (type <= kLastSynchronousType && out.sync == Duration{})
-    reading.fault(node.pointer("type"), "type {} is sent on SYNC: give \"sync_ms\"", type);
-  read_inhibit(reading, node, tpdo);
-  if (const std::int64_t event = node.whole("event_ms", 0); event != 0)
-    tpdo.event_ms = static_cast<std::uint16_t>(event);
-  out.tpdos.push_back(std::move(tpdo));
-}
-
-void check_numbers(Reading& reading, const CanopenSpec& canopen, const JsonNode& node) {
-  std::set<std::uint8_t> numbers;
-  for (std::size_t i = 0; i < canopen.tpdos.size(); ++i)
-    if (!numbers.insert(canopen.tpdos[i].number).second)
-      reading.fault(node["tpdo"][i].pointer(), "this TPDO is given twice");
-  for (std::size_t i = 0; i < canopen.unused_tpdos.size(); ++i)
-    if (!numbers.insert(canopen.unused_tpdos[i]).second)
-      reading.fault(node["unused_tpdos"][i].pointer(), "this TPDO is given already");
-}
-
-/// One map: what can be in it, and that nothing stands in two.
-void check_map(Reading& reading, const CanopenSpec::Tpdo& tpdo, std::set<std::string>& mapped, const std::string& at) {
+/// What can be in a map, and that nothing stands in two.
+void read_map(Reading& reading, const JsonNode& node, std::set<std::string>& mapped,
+              std::vector<model::ObjectId>& out) {
   std::size_t bytes = 0;
-  for (const std::string& name : tpdo.map) {
+  const std::string at = node.pointer("map");
+  for (const std::string& name : node.names("map")) {
     const Object* object = reading.profile.named(name);
     if (object == nullptr) {
       reading.fault(at, "unknown object \"{}\": not under /objects", name);
       continue;
     }
+    out.push_back(static_cast<model::ObjectId>(object - reading.profile.objects.data()));
+    if (object->part) reading.fault(at, "object \"{}\" is a part: map \"{}\"", name, object->part->of);
     const Place* place = object->place("canopen");
     bytes += (place == nullptr ? object->type : object->type_at(*place)).size;
     if (reading.needs_address(*object, "canopen", at) && reading.needs_readable(*object, at, ": no TPDO carries it") &&
@@ -84,20 +53,44 @@ void check_map(Reading& reading, const CanopenSpec::Tpdo& tpdo, std::set<std::st
   if (bytes > kPdoBytes) reading.fault(at, "maps {} bytes; a PDO holds 8", bytes);
 }
 
+void read_tpdos(Reading& reading, const JsonNode& protocol, model::CanopenProperties& out) {
+  std::set<std::int64_t> numbers;
+  std::set<std::string> mapped;
+  for (const JsonNode& node : protocol["tpdo"].elements()) {
+    model::TpdoProperties& tpdo = out.tpdos.emplace_back();
+    if (!numbers.insert(node.whole("n", 0)).second) reading.fault(node.pointer(), "this TPDO is given twice");
+    tpdo.number = static_cast<std::uint8_t>(node.whole("n", 0));
+    const std::int64_t type = node.whole("type", tpdo.type);
+    tpdo.type = static_cast<std::uint8_t>(type);
+    if (type > kLastSynchronousType && type < kFirstEventType)
+      reading.fault(node.pointer("type"), "{} is reserved, or sent on a remote frame only: use 0 to 240, 254 or 255",
+                    type);
+    else if (type <= kLastSynchronousType && out.sync == Duration{})
+      reading.fault(node.pointer("type"), "type {} is sent on SYNC: give \"sync_ms\"", type);
+    read_inhibit(reading, node, tpdo);
+    if (const auto event = node.integer("event_ms")) tpdo.event_ms = static_cast<std::uint16_t>(*event);
+    read_map(reading, node, mapped, tpdo.map);
+  }
+  for (const JsonNode& node : protocol["unused_tpdos"].elements()) {
+    const std::int64_t number = node.whole().value_or(0);
+    if (!numbers.insert(number).second) reading.fault(node.pointer(), "this TPDO is given already");
+    out.unused_tpdos.push_back(static_cast<std::uint8_t>(number));
+  }
+}
+
 /// What setup writes to the object at this address, where it is one number for all.
 std::optional<std::int64_t> set_up(const Profile& profile, ObjectAddress address) {
-  for (const WriteSpec& write : profile.setup) {
-    if (!write.is_on("canopen")) continue;
-    const Object* object = profile.find(write.object, 0);
+  for (const JsonNode& write : profile.section("setup").elements()) {
+    if (!is_on(write, "canopen")) continue;
+    const Object* object = profile.find(write.text("write"), 0);
     const Place* place = object == nullptr ? nullptr : object->place("canopen");
-    if (place == nullptr || place->address != address) continue;
-    if (const auto* literal = write.values.empty() ? nullptr : std::get_if<std::int64_t>(&write.values.front()))
-      return *literal;
+    if (place == nullptr || object->part || place->address != address) continue;
+    if (const auto literal = of_axis(write["value"], profile.axes.front()).whole()) return literal;
   }
   return std::nullopt;
 }
 
-void check_heartbeat(Reading& reading, const CanopenSpec& canopen, const JsonNode& node) {
+void check_heartbeat(Reading& reading, const model::CanopenProperties& canopen, const JsonNode& node) {
   const auto produced = set_up(reading.profile, kProducerHeartbeat);
   if (canopen.heartbeat == Duration{}) {
     if (produced.value_or(0) != 0)
@@ -127,11 +120,6 @@ void check_written(Reading& reading, const std::string& name, std::int64_t value
   });
 }
 
-void check_guard(Reading& reading, const CanopenSpec& canopen, const JsonNode& guard) {
-  check_written(reading, canopen.guard_time_object, canopen.guard_time / milliseconds(1), guard.pointer("time_object"));
-  check_written(reading, canopen.life_factor_object, canopen.life_factor, guard.pointer("factor_object"));
-}
-
 void check_consumer(Reading& reading, const LossSpec& loss, const JsonNode& node) {
   const std::int64_t after = loss.after / milliseconds(1);
   if (loss.object.empty()) reading.fault(node.pointer(), "needs \"object\": a sub-index of 1016h");
@@ -139,39 +127,30 @@ void check_consumer(Reading& reading, const LossSpec& loss, const JsonNode& node
   if (after < 3 || after > kLargestU16)
     reading.fault(node.pointer("after_ms"),
                   "must be 3 to 65535: it goes into 1016h, and a third of it is the gateway's own heartbeat");
-  check_written(reading, loss.object, std::int64_t{model::kOwnNode} << 16 | after, node.pointer("object"));
-}
-
-void check_life_guarding(Reading& reading, const ProtocolSpec& protocol, const JsonNode& node) {
-  const CanopenSpec& canopen = protocol.canopen;
-  if (canopen.guard_time == Duration{} || canopen.guard_time_object.empty() || canopen.life_factor_object.empty())
-    reading.fault(node.pointer(), "life_guarding needs \"guard\" with time_ms, time_object and factor_object");
-  check_written(reading, protocol.loss.object, protocol.loss.value, node.pointer("object"));
 }
 
 }  // namespace
 
-void read_canopen(Reading& reading, const JsonNode& node, CanopenSpec& out) {
-  out.heartbeat = milliseconds(node.whole("heartbeat_ms", 0));
-  read_guard(node["guard"], out);
-  out.sync = milliseconds(node.whole("sync_ms", 0));
-  out.boot = milliseconds(node.whole("boot_ms", 0));
-  out.confirm = milliseconds(node.whole("confirm_ms", kDefaultConfirmMs));
+void read_canopen(Reading& reading, const JsonNode& node, ProtocolSpec& protocol) {
+  model::CanopenProperties& out = protocol.canopen;
+  const JsonNode guard = node["guard"], loss = node["loss"];
+  out.heartbeat = node.milliseconds("heartbeat_ms", {});
+  out.guard_time = guard.milliseconds("time_ms", {});
+  out.life_factor = static_cast<std::uint8_t>(guard.whole("life_factor", out.life_factor));
+  out.sync = node.milliseconds("sync_ms", {});
+  out.boot = node.milliseconds("boot_ms", {});
+  out.confirm = node.milliseconds("confirm_ms", out.confirm);
   out.sdo_block = node.flag("sdo_block", false);
-  for (const JsonNode& tpdo : node["tpdo"].elements()) read_tpdo(reading, tpdo, out);
-  for (const JsonNode& number : node["unused_tpdos"].elements())
-    out.unused_tpdos.push_back(static_cast<std::uint8_t>(number.whole().value_or(0)));
-}
-
-void check_canopen(Reading& reading, const ProtocolSpec& protocol, const JsonNode& node) {
-  check_numbers(reading, protocol.canopen, node);
-  std::set<std::string> mapped;
-  for (std::size_t i = 0; i < protocol.canopen.tpdos.size(); ++i)
-    check_map(reading, protocol.canopen.tpdos[i], mapped, node["tpdo"][i].pointer("map"));
-  check_heartbeat(reading, protocol.canopen, node);
-  check_guard(reading, protocol.canopen, node["guard"]);
-  if (protocol.loss.by == LossSpec::By::heartbeat_consumer) check_consumer(reading, protocol.loss, node["loss"]);
-  if (protocol.loss.by == LossSpec::By::life_guarding) check_life_guarding(reading, protocol, node["loss"]);
+  read_tpdos(reading, node, out);
+  check_heartbeat(reading, out, node);
+  check_written(reading, guard.text("time_object"), out.guard_time / milliseconds(1), guard.pointer("time_object"));
+  check_written(reading, guard.text("factor_object"), out.life_factor, guard.pointer("factor_object"));
+  const bool consumer = protocol.loss.by == LossSpec::By::heartbeat_consumer;
+  const bool guarded = protocol.loss.by == LossSpec::By::life_guarding;
+  if (consumer) check_consumer(reading, protocol.loss, loss);
+  if (guarded && !(guard.has("time_ms") && guard.has("time_object") && guard.has("factor_object")))
+    reading.fault(loss.pointer(), "life_guarding needs \"guard\" with time_ms, time_object and factor_object");
+  if (consumer || guarded) check_written(reading, protocol.loss.object, protocol.loss.value, loss.pointer("object"));
 }
 
 }  // namespace axisgate::profile

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,42 +17,49 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// What a base says of itself alone.
-constexpr std::array kNotInherited{"$schema", "name", "base_only"};
+constexpr std::array kNotInherited{"$schema", "name", "base_only", "tried"};
 /// Sections whose entries can be written once for all motors.
 constexpr std::array kEachAxisSections{"constants", "units", "objects"};
 
-/// A document, and where each of its places was written.
-struct Layer {
-  json document;
-  WrittenPlaces written;
+/// A value of a document, and where it was written.
+struct Node {
+  std::string key;
+  json value;  ///< of a list or an object: an empty one
+  Written from;
+  std::vector<Node> children;
 };
 
-std::size_t end_of(const std::string& place, const std::string& parent) {
-  return place.size() == parent.size() || place[parent.size()] == '/' ? parent.size() : std::string::npos;
+Node tree(std::string key, const json& value, const std::string& file, const std::string& pointer) {
+  Node out{std::move(key), value.is_structured() ? json(value.type()) : value, {file, pointer}, {}};
+  if (value.is_structured())
+    for (const auto& [name, child] : value.items())
+      out.children.push_back(tree(name, child, file, pointer_to(pointer, name)));
+  return out;
+}
+
+json document_of(const Node& node, const std::string& pointer, WrittenPlaces& written) {
+  written[pointer] = node.from;
+  json out = node.value;
+  for (const Node& child : node.children) {
+    const std::string key = out.is_array() ? std::to_string(out.size()) : child.key;
+    json value = document_of(child, pointer_to(pointer, key), written);
+    if (out.is_array())
+      out.push_back(std::move(value));
+    else
+      out[key] = std::move(value);
+  }
+  return out;
 }
 
 /// The member, or null.
-const json* member(const json& node, std::string_view key) {
-  return node.is_object() && node.contains(key) ? &*node.find(key) : nullptr;
+template <class ItsNode>
+auto* member(ItsNode& node, std::string_view key) {
+  const auto at = std::ranges::find(node.children, key, &Node::key);
+  return node.value.is_object() && at != node.children.end() ? &*at : nullptr;
 }
 
-/// Everything at and under `pointer`.
-void forget(WrittenPlaces& places, const std::string& pointer) {
-  for (auto at = places.lower_bound(pointer); at != places.end() && at->first.starts_with(pointer);)
-    at = end_of(at->first, pointer) == std::string::npos ? std::next(at) : places.erase(at);
-}
-
-void copy(const WrittenPlaces& from, const std::string& pointer, WrittenPlaces& to) {
-  for (auto at = from.lower_bound(pointer); at != from.end() && at->first.starts_with(pointer); ++at)
-    if (end_of(at->first, pointer) != std::string::npos) to[at->first] = at->second;
-}
-
-void note_places(const json& node, const std::string& pointer, const std::string& file, WrittenPlaces& out) {
-  out[pointer] = {file, pointer};
-  if (node.is_object())
-    for (const auto& [key, value] : node.items()) note_places(value, pointer_to(pointer, key), file, out);
-  if (node.is_array())
-    for (std::size_t i = 0; i < node.size(); ++i) note_places(node[i], pointer_to(pointer, i), file, out);
+void take_out(Node& node, std::string_view key) {
+  std::erase_if(node.children, [&](const Node& child) { return child.key == key; });
 }
 
 /// Keys of which null says what the drive does not have. Of "loss" leaving it out would not say that.
@@ -72,11 +80,16 @@ struct Replacements {
 };
 
 /// {"A": 4, "B": 6}
-bool is_one_for_each(const json& node) {
-  if (!node.is_object() || node.empty()) return false;
-  return std::ranges::all_of(node.items(), [](const auto& entry) {
-    return entry.key().size() == 1 && entry.key()[0] >= 'A' && entry.key()[0] <= 'D';
-  });
+bool is_one_for_each(const Node& node) {
+  return node.value.is_object() && !node.children.empty() && std::ranges::all_of(node.children, [](const Node& child) {
+           return child.key.size() == 1 && child.key[0] >= 'A' && child.key[0] <= 'D';
+         });
+}
+
+template <class Change>
+std::string in_letters(std::string text, Change change) {
+  for (char& c : text) c = static_cast<char>(change(static_cast<unsigned char>(c)));
+  return text;
 }
 
 class Composer {
@@ -84,58 +97,46 @@ class Composer {
   explicit Composer(const std::vector<std::string>& folders) : folders_(folders) {}
 
   LayeredProfile result(const std::string& path) {
-    Layer layer = compose(path);
-    out_.document = std::make_shared<const json>(std::move(layer.document));
-    out_.written = std::move(layer.written);
+    const Node root = compose(path);
+    out_.document = std::make_shared<const json>(document_of(root, "", out_.written));
     return std::move(out_);
   }
 
  private:
-  Layer compose(const std::string& file) {
+  Node compose(const std::string& file) {
     out_.files.push_back(file);
     std::variant<json, SchemaFault> loaded = load_json(file, out_.read);
     if (auto* wrong = std::get_if<SchemaFault>(&loaded)) {
       out_.faults.push_back({file, wrong->pointer, wrong->message});
       return {};
     }
-    Layer own{std::get<json>(std::move(loaded)), {}};
-    note_places(own.document, "", file, own.written);
-    if (!own.document.is_object()) return own;  // the schema says so
-    std::optional<Layer> base = base_of(own, file);
-    if (base && !base->document.is_object()) {
+    Node own = tree("", std::get<json>(loaded), file, "");
+    if (!own.value.is_object()) return own;  // the schema says so
+    std::optional<Node> base = base_of(own, file);
+    if (base && !base->value.is_object()) {
       if (out_.faults.empty())
-        out_.faults.push_back({out_.files.back(), "", "must be object, is " + std::string(base->document.type_name())});
+        out_.faults.push_back({out_.files.back(), "", "must be object, is " + std::string(base->value.type_name())});
       base.reset();
     }
-    const std::vector<std::string> axes = axes_of(own, base);
-    Layer alike = each_axis(own, axes);
+    Node alike = each_axis(own, axes_of(own, base));
     repeat_checks(own);
-    for (const char* key : {"extends", "each_axis"}) {
-      own.document.erase(key);
-      forget(own.written, pointer_to("", key));
-    }
-    if (base) {
-      for (const char* key : kNotInherited) {
-        base->document.erase(key);
-        forget(base->written, pointer_to("", key));
-      }
-      if (!alike.document.empty()) lay_over(*base, base->document, alike, alike.document, "");
-      lay_over(*base, base->document, own, own.document, "");
-      return std::move(*base);
-    }
-    if (alike.document.empty()) return own;
-    lay_over(alike, alike.document, own, own.document, "");
-    return alike;
+    for (const char* key : {"extends", "each_axis"}) take_out(own, key);
+    if (!base && alike.children.empty()) return own;
+    Node out = base ? std::move(*base) : Node{"", json::object(), {}, {}};
+    for (const char* key : kNotInherited) take_out(out, key);
+    lay_over(out, std::move(alike));
+    lay_over(out, std::move(own));
+    return out;
   }
 
-  std::optional<Layer> base_of(const Layer& own, const std::string& file) {
-    const JsonNode extends = JsonNode(own.document, "")["extends"];
-    if (!extends) return std::nullopt;
+  std::optional<Node> base_of(const Node& own, const std::string& file) {
+    const Node* extends = member(own, "extends");
+    if (extends == nullptr) return std::nullopt;
     const auto refuse = [&](std::string why) {
       out_.faults.push_back({file, "/extends", std::move(why)});
       return std::nullopt;
     };
-    const std::string name = extends.text();
+    const std::string name = extends->value.is_string() ? extends->value.get<std::string>() : "";
     if (name.empty() || name.find('/') != std::string::npos || name.ends_with(".json"))
       return refuse("must be the name of another profile, as \"kinco-jd\": without a folder and without \".json\"");
     const std::optional<std::string> base = find_base(file, name);
@@ -167,155 +168,108 @@ class Composer {
     return std::nullopt;
   }
 
-  static std::vector<std::string> axes_of(const Layer& own, const std::optional<Layer>& base) {
-    std::vector<std::string> axes = JsonNode(own.document, "").names("axes");
-    if (axes.empty() && base) axes = JsonNode(base->document, "").names("axes");
-    if (axes.empty()) axes = {"A"};
-    return axes;
+  static std::vector<std::string> axes_of(const Node& own, const std::optional<Node>& base) {
+    const Node* axes = member(own, "axes");
+    if (axes == nullptr && base) axes = member(*base, "axes");
+    std::vector<std::string> out;
+    if (axes != nullptr)
+      for (const Node& axis : axes->children)
+        if (axis.value.is_string()) out.push_back(axis.value);
+    return out.empty() ? std::vector<std::string>{"A"} : out;
   }
 
   /// Objects key by key, anything else as a whole; a null takes out what the base has.
-  void lay_over(Layer& base, json& target, const Layer& over, const json& node, const std::string& pointer) {
-    base.written[pointer] = over.written.at(pointer);
-    for (const auto& [key, value] : node.items()) {
-      const std::string at = pointer_to(pointer, key);
-      const auto known = target.find(key);
-      if (value.is_null() && !null_is_a_value(key)) {
-        if (known == target.end())
-          fault(over, at, "would take out what this profile does not have from the one it extends");
-        target.erase(key);
-        forget(base.written, at);
-      } else if (value.is_object() && known != target.end() && known->is_object()) {
-        lay_over(base, *known, over, value, at);
+  void lay_over(Node& target, Node over) {
+    target.from = over.from;
+    for (Node& node : over.children) {
+      Node* known = member(target, node.key);
+      if (node.value.is_null() && !null_is_a_value(node.key)) {
+        if (known == nullptr) fault(node, "would take out what this profile does not have from the one it extends");
+        take_out(target, node.key);
+      } else if (known == nullptr) {
+        target.children.push_back(std::move(node));
+      } else if (node.value.is_object() && known->value.is_object()) {
+        lay_over(*known, std::move(node));
       } else {
-        target[key] = value;
-        forget(base.written, at);
-        copy(over.written, at, base.written);
+        *known = std::move(node);
       }
     }
   }
 
-  void fault(const Layer& own, const std::string& pointer, std::string message) {
-    const Written& written = own.written.at(pointer);
-    out_.faults.push_back({written.file, written.pointer, std::move(message)});
+  void fault(const Node& node, std::string message) {
+    out_.faults.push_back({node.from.file, node.from.pointer, std::move(message)});
   }
 
   /// Every entry of "each_axis", once for each axis.
-  Layer each_axis(const Layer& own, const std::vector<std::string>& axes) {
-    Layer out{json::object(), {}};
-    const json* sections = member(own.document, "each_axis");
+  Node each_axis(const Node& own, const std::vector<std::string>& axes) {
+    Node out{"", json::object(), own.from, {}};
+    const Node* sections = member(own, "each_axis");
     if (sections == nullptr) return out;
-    out.written[""] = own.written.at("");
-    if (!sections->is_object()) {
-      fault(own, "/each_axis", "must be object, is " + std::string(sections->type_name()));
-      return out;
-    }
-    for (const auto& [section, entries] : sections->items()) {
-      const std::string at = pointer_to("/each_axis", section);
-      if (std::ranges::find(kEachAxisSections, section) == kEachAxisSections.end() || !entries.is_object()) {
-        fault(own, at, "is not for each axis: only objects \"constants\", \"units\" and \"objects\" can be");
+    if (!sections->value.is_object())
+      fault(*sections, "must be object, is " + std::string(sections->value.type_name()));
+    for (const Node& section : sections->value.is_object() ? sections->children : std::vector<Node>{}) {
+      if (std::ranges::find(kEachAxisSections, section.key) == kEachAxisSections.end() || !section.value.is_object()) {
+        fault(section, "is not for each axis: only objects \"constants\", \"units\" and \"objects\" can be");
         continue;
       }
-      for (const auto& [key, entry] : entries.items()) {
-        const std::string from = pointer_to(at, key);
-        if (key.find("$axis") == std::string::npos && key.find("$AXIS") == std::string::npos) {
-          fault(own, from,
-                "would be one name for all axes: write \"$AXIS.\" before an object's name, \"$axis\" elsewhere");
+      Node made{section.key, json::object(), section.from, {}};
+      for (const Node& entry : section.children) {
+        if (entry.key.find("$axis") == std::string::npos && entry.key.find("$AXIS") == std::string::npos) {
+          fault(entry, "would be one name for all axes: write \"$AXIS.\" before an object's name, \"$axis\" elsewhere");
           continue;
         }
-        for (const std::string& axis : axes) {
-          std::string small = axis;
-          std::transform(small.begin(), small.end(), small.begin(), [](unsigned char c) { return std::tolower(c); });
-          const Replacements with{{{{"$axis", small}, {"$AXIS", axis}}}, axis};
-          const std::string name = with.in(key);
-          out.written[pointer_to("", section)] = own.written.at(at);
-          json made = copied(own, entry, from, with, out, pointer_to(pointer_to("", section), name));
-          out.document[section][name] = std::move(made);
-        }
+        for (const std::string& axis : axes)
+          made.children.push_back(copied(entry, {{{{"$axis", in_letters(axis, tolower)}, {"$AXIS", axis}}}, axis}));
       }
+      if (!made.children.empty()) out.children.push_back(std::move(made));
     }
     return out;
   }
 
-  /// `node`, which stands at `from`, with the words replaced; where its places come from is noted under `to`.
-  json copied(const Layer& own, const json& node, const std::string& from, const Replacements& with, Layer& out,
-              const std::string& to) {
-    out.written[to] = own.written.at(from);
-    if (node.is_string()) return with.in(node.get<std::string>());
-    if (node.is_array()) {
-      json list = json::array();
-      for (std::size_t i = 0; i < node.size(); ++i)
-        list.push_back(copied(own, node[i], pointer_to(from, i), with, out, pointer_to(to, i)));
-      return list;
-    }
-    if (!node.is_object()) return node;
+  Node copied(const Node& node, const Replacements& with) {
     if (!with.axis.empty() && is_one_for_each(node)) {
-      const auto value = node.find(with.axis);
-      if (value != node.end()) return copied(own, *value, pointer_to(from, with.axis), with, out, to);
-      fault(own, from, "a value for axis \"" + with.axis + "\" is missing");
-      return nullptr;
+      const Node* value = member(node, with.axis);
+      if (value == nullptr) fault(node, "a value for axis \"" + with.axis + "\" is missing");
+      Node out = value == nullptr ? Node{"", nullptr, node.from, {}} : copied(*value, with);
+      out.key = with.in(node.key);
+      return out;
     }
-    json made = json::object();
-    for (const auto& [key, value] : node.items()) {
-      const std::string name = with.in(key);
-      made[name] = copied(own, value, pointer_to(from, key), with, out, pointer_to(to, name));
-    }
-    return made;
+    Node out{with.in(node.key), node.value, node.from, {}};
+    if (node.value.is_string()) out.value = with.in(node.value.get<std::string>());
+    for (const Node& child : node.children) out.children.push_back(copied(child, with));
+    return out;
   }
 
   /// A check with "each" stands for as many checks.
-  void repeat_checks(Layer& own) {
-    const json* checks = member(own.document, "checks");
-    if (checks == nullptr || !checks->is_array()) return;
-    if (std::none_of(checks->begin(), checks->end(),
-                     [](const json& check) { return member(check, "each") != nullptr; }))
-      return;
-    Layer out{json::array(), {}};
-    for (std::size_t i = 0; i < checks->size(); ++i) {
-      const std::string from = pointer_to("/checks", i);
-      for (const std::string& name : repeated(own, (*checks)[i], from)) {
-        std::string large = name;
-        std::transform(large.begin(), large.end(), large.begin(), [](unsigned char c) { return std::toupper(c); });
-        const Replacements with{{{{"$each", name}, {"$EACH", large}}}, ""};
-        json entry = (*checks)[i];
-        if (entry.is_object() && !name.empty()) entry.erase("each");
-        const std::string to = pointer_to("/checks", out.document.size());
-        json made = name.empty() ? entry : copied(own, entry, from, with, out, to);
-        if (name.empty()) copy_under(own.written, from, out.written, to);
-        out.document.push_back(std::move(made));
-      }
+  void repeat_checks(Node& own) {
+    Node* checks = member(own, "checks");
+    if (checks == nullptr || !checks->value.is_array()) return;
+    std::vector<Node> out;
+    for (Node& check : checks->children) {
+      const Node* each = member(check, "each");
+      const std::vector<std::string> names = each == nullptr ? std::vector<std::string>{} : names_in(*each);
+      if (each == nullptr) out.push_back(check);
+      take_out(check, "each");
+      for (const std::string& name : names)
+        out.push_back(copied(check, {{{{"$each", name}, {"$EACH", in_letters(name, toupper)}}}, ""}));
     }
-    const Written here = own.written.at("/checks");
-    forget(own.written, "/checks");
-    own.written["/checks"] = here;
-    own.written.merge(out.written);
-    own.document["checks"] = std::move(out.document);
+    checks->children = std::move(out);
   }
 
-  /// The names to repeat it with; one without letters: as it is.
-  std::vector<std::string> repeated(const Layer& own, const json& check, const std::string& at) {
-    const json* each = member(check, "each");
-    if (each == nullptr) return {""};
-    const auto is_name = [](const json& entry) {
-      if (!entry.is_string()) return false;
-      const std::string& name = entry.get_ref<const std::string&>();
+  std::vector<std::string> names_in(const Node& each) {
+    std::vector<std::string> out;
+    for (const Node& name : each.children)
+      if (name.value.is_string()) out.push_back(name.value);
+    const auto is_name = [](const std::string& name) {
       return !name.empty() && name.size() <= 48 && std::ranges::all_of(name, [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
       });
     };
-    if (each->is_array() && !each->empty() && each->size() <= kMaxEach &&
-        std::all_of(each->begin(), each->end(), is_name))
-      return each->get<std::vector<std::string>>();
-    fault(own, pointer_to(at, "each"),
-          "must be 1 to " + std::to_string(kMaxEach) + " names of small letters, digits and '_'");
+    if (each.value.is_array() && !out.empty() && out.size() == each.children.size() && out.size() <= kMaxEach &&
+        std::ranges::all_of(out, is_name))
+      return out;
+    fault(each, "must be 1 to " + std::to_string(kMaxEach) + " names of small letters, digits and '_'");
     return {};
-  }
-
-  static void copy_under(const WrittenPlaces& from, const std::string& pointer, WrittenPlaces& to,
-                         const std::string& under) {
-    WrittenPlaces found;
-    copy(from, pointer, found);
-    for (const auto& [place, written] : found) to[under + place.substr(pointer.size())] = written;
   }
 
   const std::vector<std::string>& folders_;

@@ -28,13 +28,39 @@ void read_head(Reading& reading, const std::string& file) {
   out.title = reading.document.text("title");
   out.nvm = nvm_named(reading.document.text("nvm"));
   out.axes = reading.document.names("axes");
+  out.only_simulated = reading.document.text("tried") == "simulated";
   if (out.axes.empty()) out.axes = {"A"};
+  for (const JsonNode& protocol : reading.document["protocols"].members()) out.protocols[protocol.key()];
   if (std::set<std::string>(out.axes.begin(), out.axes.end()).size() != out.axes.size())
     reading.fault("/axes", "an axis is named twice");
   const std::string stem = std::filesystem::path(file).stem().string();
   // Configurations find a profile by its file's name, logs and maps show its own: they must be one.
   if (!out.name.empty() && out.name != stem)
     reading.fault("/name", "is \"{}\", but the file is called \"{}.json\"", out.name, stem);
+}
+
+void read_identity(Reading& reading) {
+  constexpr std::array<std::string_view, 3> kNumbers{"vendor", "product", "revision"};
+  const JsonNode node = reading.document["identity"];
+  if (!node.is_object()) return;
+  if (!reading.profile.protocols.contains("canopen"))
+    reading.fault(node.pointer(), "belongs to canopen, which this drive does not speak: no other protocol has 1018h");
+  IdentitySpec& out = reading.profile.identity.emplace();
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
+    for (const std::int64_t number : node.wholes(kNumbers[i])) {
+      if (number < 0 || number > UINT32_MAX)
+        reading.fault(node.pointer(kNumbers[i]), "{} is no number of 32 bits", number);
+      out.numbers[i].push_back(static_cast<std::uint32_t>(number));
+    }
+  }
+}
+
+void read_asks(Reading& reading) {
+  for (const JsonNode& node : reading.document["ask"].elements()) {
+    Ask ask{node.text("of"), node.text("text"), node.text("where"), node.names("before"), node.pointer()};
+    if (!ask.of.starts_with('/')) static_cast<void>(reading.constant_named(ask.of, node.pointer("of")));
+    reading.profile.asks.push_back(std::move(ask));
+  }
 }
 
 }  // namespace
@@ -67,28 +93,30 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
     out.faults.push_back({path, "/base_only", "is no drive but a base: name or check a profile that extends it"});
     return out;
   }
+  out.profile.document = layered.document;
   std::vector<SchemaFault> faults = validate(document, profile_schema());
   Reading reading(document, out.profile, faults);
   read_head(reading, path);
   read_constants(reading);
+  read_asks(reading);
   read_units(reading);
-  read_protocols(reading);
+  read_identity(reading);
   read_objects(reading);
   read_quantities(reading);
   read_modes(reading);
-  read_configured_mode(reading);
+  check_configured_mode(reading);
   read_state(reading);
   read_homing(reading);
   read_commands(reading);
-  read_setup(reading);
-  read_checks(reading);
+  check_setup(reading);
+  check_checks(reading);
   read_alarms(reading);
-  read_keepalive(reading);
-  check_protocols(reading);
+  read_protocols(reading);
   check_keepalive(reading);
   check_unsolicited_writes(reading);
   check_stops_start_nothing(reading);
-  read_constant_rules(reading);
+  check_shared(reading);
+  check_constant_rules(reading);
   check_state_places(reading);
   for (SchemaFault& fault : faults) {
     Written written = written_at(out.written, fault.pointer);

@@ -8,17 +8,10 @@ namespace axisgate::profile {
 
 namespace {
 
-constexpr std::int64_t kLowestMode = -128, kHighestMode = 127;
 /// More numbers than a parameter that chooses a mode can have.
 constexpr std::int64_t kMostModes = 256;
 /// A command that is late by one whole period must not stop the motor.
 constexpr int kPeriodsBeforeLoss = 2;
-
-std::optional<std::int16_t> mode_named(const std::string& key) {
-  const std::optional<std::int64_t> mode = whole_number(key);
-  if (!mode || *mode < kLowestMode || *mode > kHighestMode) return std::nullopt;
-  return static_cast<std::int16_t>(*mode);
-}
 
 /// Every number that the configuration may give must be a mode.
 void check_mode_constant(Reading& reading, const std::string& name, const std::string& pointer) {
@@ -40,9 +33,9 @@ void check_mode_constant(Reading& reading, const std::string& name, const std::s
 }
 
 /// Repeated is the set-point of the mode, and no other object: nothing that would start something anew.
-void check_resent(Reading& reading, std::int16_t mode, const std::string& name) {
-  const KeepAliveSpec& spec = *reading.profile.keepalive;
-  const std::string at = pointer_to("/keepalive/resend", std::to_string(mode));
+void check_resent(Reading& reading, const JsonNode& keepalive, const JsonNode& resent) {
+  const std::string at = resent.pointer(), name = resent.text();
+  const auto mode = static_cast<std::int16_t>(whole_number(resent.key()).value_or(0));
   if (!reading.names_mode(mode, at) || !reading.names_object(name, at)) return;
   const std::optional<Quantity> setpoint = setpoint_of(mode);
   const QuantitySpec* quantity = setpoint ? reading.profile.find(*setpoint) : nullptr;
@@ -51,16 +44,16 @@ void check_resent(Reading& reading, std::int16_t mode, const std::string& name) 
                          setpoint ? fmt::format(", an object of {}", row(*setpoint).name) : ", which has none");
   reading.each_meaning(name, [&](const Object& object) {
     for (const auto& [protocol, unused] : reading.profile.protocols)
-      if (spec.is_on(protocol)) reading.needs_address(object, protocol, at);
+      if (is_on(keepalive, protocol)) reading.needs_address(object, protocol, at);
   });
 }
 
-void check_watchdogs(Reading& reading, const KeepAliveSpec& spec) {
+void check_watchdogs(Reading& reading, const JsonNode& keepalive) {
   for (const auto& [name, protocol] : reading.profile.protocols) {
-    if (!spec.is_on(name)) continue;
+    if (!is_on(keepalive, name)) continue;
     if (protocol.loss.by != LossSpec::By::command_watchdog)
       reading.fault("/keepalive/on", "nothing on {} needs it: its \"loss\" is no command_watchdog", name);
-    else if (kPeriodsBeforeLoss * spec.every > protocol.loss.after)
+    else if (kPeriodsBeforeLoss * keepalive.milliseconds("every_ms", {}) > protocol.loss.after)
       reading.fault("/keepalive/every_ms",
                     "is more than half of what {0} allows, /protocols/{0}/loss/after_ms: one late command would stop "
                     "the motor",
@@ -90,65 +83,40 @@ std::optional<Quantity> setpoint_of(std::int16_t mode) {
 }
 
 void read_modes(Reading& reading) {
-  for (const JsonNode& node : reading.document["modes"].members()) {
-    if (const std::optional<std::int16_t> mode = mode_named(node.key()))
-      reading.profile.modes.emplace(*mode, node.whole().value_or(0));
-    else
-      reading.fault(node.pointer(), "\"{}\" is no mode: use CiA 402 numbers, or negative ones for the drive's own",
-                    node.key());
-  }
+  for (const JsonNode& node : reading.document["modes"].members())
+    if (const auto mode = whole_number(node.key()))
+      reading.profile.modes.emplace(static_cast<std::int16_t>(*mode), node.whole().value_or(0));
 }
 
-void read_configured_mode(Reading& reading) {
+void check_configured_mode(Reading& reading) {
   const JsonNode section = reading.document["configured_mode"];
   if (!section.is_object()) return;
-  ConfiguredModeSpec out;
   if (const JsonNode state = reading.document["state"]; state && state.text("model") != "virtual")
     reading.fault(section.pointer(), "belongs to a virtual drive: the mode object of this one tells its mode");
   const JsonNode constant = section["constant"];
-  if (constant.is_string())
-    out.constants = {constant.text()};
-  else if (constant)
-    out.constants = text_for_each_axis(reading, constant, "constant");
-  for (const std::string& name : out.constants)
-    if (!name.empty()) check_mode_constant(reading, name, constant.pointer());
-  out.fixed_on = section.names("fixed_on");
-  for (const std::string& protocol : out.fixed_on) reading.names_protocol(protocol, section.pointer("fixed_on"));
-  for (const JsonNode& entry : section["only"].elements()) {
-    out.only.push_back(static_cast<std::int16_t>(entry.whole().value_or(0)));
-    reading.names_mode(out.only.back(), section.pointer("only"));
+  for (const std::string& axis : reading.profile.axes) {
+    if (const std::string name = of_axis(constant, axis).text(); !name.empty())
+      check_mode_constant(reading, name, constant.pointer());
+    else
+      reading.fault(constant.pointer(), "a constant for axis \"{}\" is missing", axis);
   }
-  out.needs_disabled = section.flag("needs_disabled", false);
-  if (!out.constants.empty()) reading.profile.configured_mode = std::move(out);
-}
-
-void read_keepalive(Reading& reading) {
-  const JsonNode section = reading.document["keepalive"];
-  if (!section.is_object()) return;
-  KeepAliveSpec& out = reading.profile.keepalive.emplace();
-  out.every = milliseconds(section.whole("every_ms", 0));
-  out.on = section.names("on");
-  for (const JsonNode& name : section["resend"].members()) {
-    const std::optional<std::int16_t> mode = mode_named(name.key());
-    if (!mode)
-      reading.fault(name.pointer(), "\"{}\" is no mode", name.key());
-    else if (name.is_string())
-      out.resend.emplace(*mode, name.text());
-  }
+  for (const std::string& protocol : section.names("fixed_on"))
+    reading.names_protocol(protocol, section.pointer("fixed_on"));
+  for (const std::int64_t mode : section.wholes("only")) reading.names_mode(mode, section.pointer("only"));
 }
 
 void check_keepalive(Reading& reading) {
-  if (!reading.profile.keepalive) {
+  const JsonNode section = reading.document["keepalive"];
+  if (!section.is_object()) {
     for (const auto& [name, protocol] : reading.profile.protocols)
       if (protocol.loss.by == LossSpec::By::command_watchdog)
         reading.fault(pointer_to(pointer_to("/protocols", name), "loss"),
                       "a command watchdog would stop every motion: say in \"keepalive\" what is repeated");
     return;
   }
-  const KeepAliveSpec& spec = *reading.profile.keepalive;
-  for (const std::string& protocol : spec.on) reading.names_protocol(protocol, "/keepalive/on");
-  for (const auto& [mode, name] : spec.resend) check_resent(reading, mode, name);
-  check_watchdogs(reading, spec);
+  for (const std::string& protocol : section.names("on")) reading.names_protocol(protocol, "/keepalive/on");
+  for (const JsonNode& resent : section["resend"].members()) check_resent(reading, section, resent);
+  check_watchdogs(reading, section);
 }
 
 }  // namespace axisgate::profile

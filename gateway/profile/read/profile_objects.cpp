@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 
 namespace axisgate::profile {
@@ -31,6 +32,27 @@ std::string_view expected_on(std::string_view protocol) {
   return "give index and sub-index in hexadecimal, \"6041.00\"";
 }
 
+bool is_bit(const ObjectAddress& address) {
+  return address.sub == static_cast<std::uint8_t>(ModbusTable::coil) ||
+         address.sub == static_cast<std::uint8_t>(ModbusTable::discrete);
+}
+
+/// modbus-rtu: which table the number is of.
+std::uint8_t read_table(Reading& reading, const Object& object, const JsonNode& node) {
+  static constexpr auto kTables = names_of<ModbusTable>({{ModbusTable::holding, "holding"},
+                                                         {ModbusTable::input, "input"},
+                                                         {ModbusTable::coil, "coil"},
+                                                         {ModbusTable::discrete, "discrete"}});
+  const std::string name = node.text("table");
+  const ModbusTable table = kTables.named(name).value_or(ModbusTable::holding);
+  const auto sub = static_cast<std::uint8_t>(table);
+  if (object.writable && (table == ModbusTable::input || table == ModbusTable::discrete))
+    reading.fault(node.pointer("table"), "\"{}\" can only be read, and object \"{}\" is written", name, object.name);
+  if (is_bit({0, sub}) && object.type != DataType{1, false})
+    reading.fault(node.pointer("table"), "\"{}\" holds one bit: object \"{}\" has to be a u8", name, object.name);
+  return sub;
+}
+
 std::optional<Place> read_place(Reading& reading, const Object& object, const JsonNode& node) {
   const std::string protocol = node.key();
   const JsonNode address = node.is_object() ? node["address"] : node;
@@ -51,6 +73,10 @@ std::optional<Place> read_place(Reading& reading, const Object& object, const Js
     return std::nullopt;
   }
   out.address = *found;
+  if (protocol == "modbus-rtu")
+    out.address.sub = read_table(reading, object, node);
+  else if (node.has("table"))
+    reading.fault(node.pointer("table"), "belongs to modbus-rtu; {}", expected_on(protocol));
   return keya ? place_in_frame(reading, object, node, std::move(out)) : std::optional(out);
 }
 
@@ -78,6 +104,15 @@ void read_slot(Reading& reading, Object& out) {
     out.slot = static_cast<AxisSlot>(axis - axes.begin());
 }
 
+void read_part(Reading& reading, const JsonNode& node, Object& out) {
+  const auto bits = static_cast<std::int64_t>(8 * out.type.size);
+  const std::int64_t count = node.whole("count", bits);
+  if (count > bits) reading.fault(node.pointer("count"), "is more than the {} bits of its type", bits);
+  out.part = {node.text("of"), static_cast<std::uint8_t>(node.whole("from", 0)),
+              static_cast<std::uint8_t>(std::min(count, bits))};
+  if (out.trigger) reading.fault(out.pointer, "a part starts nothing: it is written with the rest of the whole");
+}
+
 void read_object(Reading& reading, const JsonNode& node) {
   Object out;
   out.name = node.key();
@@ -95,6 +130,9 @@ void read_object(Reading& reading, const JsonNode& node) {
   out.unit = node.text("unit");
   if (!out.unit.empty()) reading.names_unit(out.unit, node.pointer("unit"));
   out.alias_of = node.text("alias_of");
+  if (node.has("part")) read_part(reading, node["part"], out);
+  if (node.has("part") == node.has("at"))
+    reading.fault(out.pointer, "an object has an address, \"at\", or is a \"part\" of one: give one of them");
   read_range(reading, node["range"], out);
   if (out.trigger && !out.writable) reading.fault(node.pointer("trigger"), "only a writable object can be a trigger");
   for (const JsonNode& place : node["at"].members()) {
@@ -102,6 +140,9 @@ void read_object(Reading& reading, const JsonNode& node) {
     if (std::optional<Place> found = read_place(reading, out, place))
       out.places.emplace(place.key(), std::move(*found));
   }
+  if (const Place* rtu = out.place("modbus-rtu");
+      rtu != nullptr && is_bit(rtu->address) && out.type.size == 1 && !out.range)
+    out.range = Range{0, 1};
   reading.profile.objects.push_back(std::move(out));
 }
 
@@ -114,7 +155,8 @@ struct Extent {
 Extent extent(const std::string& protocol, const Object& object, const Place& place) {
   const std::int64_t size = object.type_at(place).size * 8;
   if (protocol == "modbus-rtu")
-    return {"", place.address.index * 16, place.address.index * 16 + std::max<std::int64_t>(size, 16)};
+    return {fmt::format("{}", place.address.sub), place.address.index * 16,
+            place.address.index * 16 + std::max<std::int64_t>(size, 16)};
   const std::int64_t from = place.address.byte * 8;
   return {fmt::format("{}.{}", place.address.index, place.address.sub), from, from + size};
 }
@@ -122,16 +164,59 @@ Extent extent(const std::string& protocol, const Object& object, const Place& pl
 /// `object` at its place on one protocol, against all `before` it.
 void check_address(Reading& reading, const Object& object, const std::string& protocol,
                    std::span<const Object> before) {
+  if (object.part) return;
   const std::string at = pointer_to(pointer_to(object.pointer, "at"), protocol);
   const Extent mine = extent(protocol, object, *object.place(protocol));
   if (protocol == "modbus-rtu" && mine.to > kLastRegister * 16 + 16)
     reading.fault(at, "is wider than one register, and there is none after {}", kLastRegister);
   for (const Object& other : before) {
     const Place* place = other.place(protocol);
-    if (place == nullptr || are_aliases(object, other)) continue;
+    if (place == nullptr || other.part || are_aliases(object, other)) continue;
     const Extent theirs = extent(protocol, other, *place);
     if (mine.where == theirs.where && mine.from < theirs.to && theirs.from < mine.to)
       reading.fault(at, "object \"{}\" has this address already; if that is meant, say \"alias_of\"", other.name);
+  }
+}
+
+/// What is written of a whole is the part's alone: it must be readable before, and nothing may start by being written.
+void check_whole(Reading& reading, const Object& whole, const Object& part) {
+  const std::string at = pointer_to(part.pointer, "part");
+  if (whole.part) return reading.fault(at, "object \"{}\" is a part itself: name the whole", whole.name);
+  if (whole.slot != kNoAxis && whole.slot != part.slot)
+    reading.fault(at, "object \"{}\" belongs to another axis", whole.name);
+  if (whole.any_width) reading.fault(at, "object \"{}\" has any width: which bits these are nobody knows", whole.name);
+  if (part.readable) reading.needs_readable(whole, at);
+  if (part.writable && !(whole.readable && whole.writable && !whole.trigger))
+    reading.fault(at, "object \"{}\" must be readable, writable and no trigger, for its part to be written",
+                  whole.name);
+  for (const auto& [protocol, place] : whole.places) {
+    if (is_keya(protocol)) reading.fault(at, "{} has no parts: name a byte of the frame", protocol);
+    const int bits = 8 * whole.type_at(place).size;
+    if (part.part->from + part.part->count > bits)
+      reading.fault(at, "reaches beyond the {} bits of object \"{}\"", bits, whole.name);
+  }
+}
+
+bool share_bits(const PartSpec& a, const PartSpec& b) {
+  return a.of == b.of && a.from < b.from + b.count && b.from < a.from + a.count;
+}
+
+/// A part is where its whole is.
+void place_parts(Reading& reading) {
+  std::vector<Object>& objects = reading.profile.objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    Object& part = objects[i];
+    if (!part.part) continue;
+    const Object* whole = reading.profile.named(part.part->of);
+    if (whole == nullptr) {
+      reading.fault(pointer_to(part.pointer, "part"), "unknown object \"{}\": not under /objects", part.part->of);
+      continue;
+    }
+    check_whole(reading, *whole, part);
+    for (const auto& [protocol, place] : whole->places) part.places.emplace(protocol, Place{.address = place.address});
+    for (const Object& other : std::span(objects).first(i))
+      if (other.part && (other.writable || part.writable) && share_bits(*other.part, *part.part))
+        reading.fault(pointer_to(part.pointer, "part"), "object \"{}\" has some of these bits already", other.name);
   }
 }
 
@@ -143,6 +228,7 @@ bool are_aliases(const Object& a, const Object& b) {
 
 void read_objects(Reading& reading) {
   for (const JsonNode& node : reading.document["objects"].members()) read_object(reading, node);
+  place_parts(reading);
   const std::vector<Object>& objects = reading.profile.objects;
   if (objects.size() > model::kMaxObjects) reading.fault("/objects", "more than {} objects", model::kMaxObjects);
   for (const Object& object : objects) {

@@ -60,13 +60,26 @@ void check_unit(Reading& reading, const QuantitySpec& spec, const Object& object
                          quantity.name, object.name);
   }
   const auto unit = reading.profile.units.find(name);
-  if (unit != reading.profile.units.end() && model::kind_of(unit->second.base) != quantity.kind)
+  if (unit == reading.profile.units.end()) return;
+  if (spec.quantity == Quantity::position_actual && unit->second.mul.empty() && unit->second.div.empty())
+    reading.fault(spec.pointer,
+                  "by unit \"{}\" one count would be a whole turn: give the unit \"mul\", the counts of a turn, as a "
+                  "number or a constant",
+                  name);
+  if (model::kind_of(unit->second.base) != quantity.kind)
     reading.fault(spec.pointer, "unit \"{}\" does not fit \"{}\", whose registers count in {}", name, quantity.name,
                   unit_text(quantity.kind));
 }
 
 void check_object(Reading& reading, const QuantitySpec& spec, const Object& object) {
   if (!row(spec.quantity).writable) reading.needs_readable(object, spec.pointer, ", so no value can come from it");
+  const bool target = spec.quantity == Quantity::target_position || spec.quantity == Quantity::target_velocity ||
+                      spec.quantity == Quantity::target_torque;
+  if (target && !object.writable)
+    reading.fault(spec.pointer,
+                  "object \"{}\" is read-only, so nothing can be asked by it: say \"access\": \"rw\", or "
+                  "take the quantity out",
+                  object.name);
   check_unit(reading, spec, object);
 }
 
@@ -95,6 +108,26 @@ void read_limits(Reading& reading, const JsonNode& limits, QuantitySpec& out) {
   }
 }
 
+/// They count one and the same way; where one of them was copied wrongly, a move would end elsewhere.
+void check_positions_alike(Reading& reading) {
+  const QuantitySpec* actual = reading.profile.find(Quantity::position_actual);
+  const QuantitySpec* target = reading.profile.find(Quantity::target_position);
+  if (actual == nullptr || target == nullptr) return;
+  reading.each_object_of(Quantity::position_actual, [&](const Object& read) {
+    reading.each_object_of(Quantity::target_position, [&](const Object& written) {
+      if (actual->unit_of(read) != target->unit_of(written)) return;
+      if (read.type.size < written.type.size)
+        reading.fault(actual->pointer, "object \"{}\" has {} bits and \"{}\" {}: one of the two has the wrong \"type\"",
+                      read.name, 8 * read.type.size, written.name, 8 * written.type.size);
+      if (!read.type.is_signed && written.type.is_signed)
+        reading.fault(actual->pointer,
+                      "object \"{}\" has no sign and \"{}\" has one: one of the two has the wrong "
+                      "\"type\"",
+                      read.name, written.name);
+    });
+  });
+}
+
 }  // namespace
 
 void read_quantities(Reading& reading) {
@@ -119,6 +152,7 @@ void read_quantities(Reading& reading) {
       reading.fault(node.pointer("commanded"), "only position_actual can be said to be commanded");
     reading.profile.quantities.push_back(std::move(out));
   }
+  check_positions_alike(reading);
 }
 
 }  // namespace axisgate::profile

@@ -68,6 +68,11 @@ bool Reading::needs_readable(const Object& object, const std::string& pointer, s
 
 bool Reading::needs_writable(const Object& object, const std::string& pointer) {
   if (!object.writable) fault(pointer, "object \"{}\" is read-only", object.name);
+  const auto is_part = [&](const Object& other) {
+    return other.part && other.writable && other.part->of == object.name;
+  };
+  if (const auto part = std::ranges::find_if(profile.objects, is_part); part != profile.objects.end())
+    fault(pointer, "object \"{}\" is written by its parts alone: \"{}\"", object.name, part->name);
   return object.writable;
 }
 
@@ -84,13 +89,6 @@ bool Reading::needs_number(const Object& object, std::int64_t number, const std:
 }
 
 std::string listed(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
-
-std::vector<std::int64_t> numbers_in(const JsonNode& list) {
-  std::vector<std::int64_t> out;
-  for (const JsonNode& entry : list.elements())
-    if (const std::optional<std::int64_t> number = entry.whole()) out.push_back(*number);
-  return out;
-}
 
 std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& node, std::string_view what) {
   std::vector<std::string> out;

@@ -75,24 +75,25 @@ class Reading {
     if (const QuantitySpec* spec = profile.find(quantity))
       for (const std::string& name : spec->objects) each_meaning(name, check);
   }
-  /// Readers of a value, shared by commands, setup and remedies.
-  [[nodiscard]] std::vector<ValueSpec> values(const JsonNode& node);
-  void value_fits(const ValueSpec& value, const Object& object, const std::string& pointer);
+  /// Judges what is written to an object: in a step, by setup or by a remedy.
+  void write(const JsonNode& node, bool by_command);
   /// For what is written without a further look: not an amount in a unit that waits for the drive.
-  void value_known(const ValueSpec& value, const Object& object, const std::string& pointer);
-  [[nodiscard]] ConditionSpec condition(const JsonNode& node, const std::string& object);
+  void value_known(const WriteValue& value, const Object& object, const std::string& pointer);
+  /// Judges a condition where there is one. `object`: the key of its object.
+  void condition(const JsonNode& node, std::string_view object = "object");
   /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
-  [[nodiscard]] std::optional<model::Amount> amount(const JsonNode& node);
+  std::optional<model::Amount> amount(const JsonNode& node);
 
  private:
-  void by_constant(const JsonNode& node, std::int64_t mask, ConditionSpec& out);
+  /// Of each axis its own.
+  void values(const JsonNode& node);
+  void value_fits(const WriteValue& value, const Object& object, const std::string& pointer);
+  void by_constant(const JsonNode& node, std::int64_t mask);
   std::vector<SchemaFault>& faults_;
   std::size_t from_schema_;
 };
 
 [[nodiscard]] inline Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
-/// The whole numbers of a list.
-[[nodiscard]] std::vector<std::int64_t> numbers_in(const JsonNode& list);
 /// One text for each axis, from {"A": ..., "B": ...}; a fault where the `what` of an axis is missing.
 [[nodiscard]] std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& node,
                                                           std::string_view what);
@@ -115,21 +116,18 @@ template <class Map>
 // The sections, in the order in which they must be read.
 void read_constants(Reading& reading);
 void read_units(Reading& reading);
-void read_protocols(Reading& reading);
 void read_objects(Reading& reading);
 void read_quantities(Reading& reading);
 void read_modes(Reading& reading);
-void read_configured_mode(Reading& reading);
+void check_configured_mode(Reading& reading);
 void read_state(Reading& reading);
 void read_homing(Reading& reading);
 void read_commands(Reading& reading);
-void read_setup(Reading& reading);
-void read_checks(Reading& reading);
+void check_setup(Reading& reading);
+void check_checks(Reading& reading);
 void read_alarms(Reading& reading);
-void read_keepalive(Reading& reading);
 /// Of section "protocols": what belongs to canopen alone.
-void read_canopen(Reading& reading, const JsonNode& node, CanopenSpec& out);
-void check_canopen(Reading& reading, const ProtocolSpec& protocol, const JsonNode& node);
+void read_canopen(Reading& reading, const JsonNode& node, ProtocolSpec& protocol);
 /// Of sections "protocols" and "objects": what belongs to Keya's own protocols alone.
 [[nodiscard]] bool is_keya(std::string_view protocol);
 /// `place` has what every protocol's places have; none where it is wrong.
@@ -137,43 +135,29 @@ void check_canopen(Reading& reading, const ProtocolSpec& protocol, const JsonNod
                                                   Place place);
 void check_control_frame(Reading& reading, const std::string& protocol, const std::string& pointer);
 /// After all: what a section can only be judged by together with others.
-void check_protocols(Reading& reading);
+void read_protocols(Reading& reading);
 void check_keepalive(Reading& reading);
-void read_constant_rules(Reading& reading);
+void check_constant_rules(Reading& reading);
 void check_state_places(Reading& reading);
 
 /// Two names of one object, as "alias_of" says.
 [[nodiscard]] bool are_aliases(const Object& a, const Object& b);
 /// `object` is, on any axis, one of those that the quantity comes from.
 [[nodiscard]] bool is_of(const Reading& reading, const std::string& object, Quantity quantity);
-/// Calls `check(step)` for the steps of a command, whatever the mode.
-template <class Check>
-void each_step(const CommandSpec& command, Check&& check) {
-  for (const StepSpec& step : command.steps) check(step);
-  for (const CommandSpec::Variant& variant : command.variants)
-    for (const StepSpec& step : variant.steps) check(step);
-}
-template <class Check>
-void each_write(const CommandSpec& command, Check&& check) {
-  each_step(command, [&](const StepSpec& step) {
-    if (step.verb == model::Step::Verb::write) check(step);
-  });
-}
 /// A stop, a fault reset and a save must not enable, a halt must not go on.
-void check_never_enables(Reading& reading, const CommandSpec& command);
+void check_never_enables(Reading& reading, const CommandEntry& command);
 /// An enable has no start in it, no mode and no target but to stay where it is.
-void check_enable_starts_nothing(Reading& reading, const CommandSpec& command);
-/// On a CiA 402 drive a quick_stop or disable takes a controlword for it: one of these steps writes it.
-void check_stops_by_word(Reading& reading, const CommandSpec& command, const std::vector<StepSpec>& steps,
-                         const std::string& pointer);
+void check_enable_starts_nothing(Reading& reading, const CommandEntry& command);
+/// On a CiA 402 drive a quick_stop or disable takes a controlword for it: one of the steps under `owner` writes it.
+void check_stops_by_word(Reading& reading, const CommandEntry& command, const JsonNode& owner);
 /// What stops, clears or stores gives the motor no speed and no torque.
-void check_turns_nothing(Reading& reading, const CommandSpec& command);
+void check_turns_nothing(Reading& reading, const CommandEntry& command);
 /// After all: neither setup nor a remedy enables the motor or gives it a mode or a target.
 void check_unsolicited_writes(Reading& reading);
 /// No command of a virtual axis that moves nothing may write what enables or moves it elsewhere.
 void check_stops_start_nothing(Reading& reading);
 
-/// Reads "write"/"value"/"on"/"why" as setup and remedies have them.
-[[nodiscard]] WriteSpec read_write(Reading& reading, const JsonNode& node);
+/// After all: motors that are commanded as one are said to be shared, and none of them is started with another.
+void check_shared(Reading& reading);
 
 }  // namespace axisgate::profile

@@ -10,16 +10,6 @@ namespace axisgate::profile {
 
 namespace {
 
-constexpr std::int64_t kLowestMethod = -128;
-constexpr std::int64_t kHighestMethod = 127;
-
-bool is_method(std::int64_t number) { return number >= kLowestMethod && number <= kHighestMethod; }
-
-std::optional<ConditionSpec> condition_in(Reading& reading, const JsonNode& node) {
-  if (!node.is_object()) return std::nullopt;
-  return reading.condition(node, node.text("object"));
-}
-
 void check_cia402(Reading& reading, const JsonNode& node) {
   for (const Quantity quantity : {Quantity::statusword, Quantity::controlword, Quantity::mode})
     if (reading.profile.find(quantity) == nullptr)
@@ -30,11 +20,12 @@ void check_cia402(Reading& reading, const JsonNode& node) {
 }
 
 /// What CiA 402 leaves to the makers.
-void read_makers_facts(Reading& reading, const JsonNode& node, StateSpec& out) {
-  if (node.has("follow_bits")) out.follow_bits = static_cast<std::uint16_t>(node.whole("follow_bits", 0));
-  if (out.follow_bits && (*out.follow_bits & ~std::uint32_t{model::controlword::kMaker}) != 0)
+void read_makers_facts(Reading& reading, const JsonNode& node, model::Cia402Properties& out) {
+  out.setpoint_acknowledge =
+      reading.profile.state.is_virtual || node.flag("setpoint_acknowledge", out.setpoint_acknowledge);
+  out.follow_bits = static_cast<std::uint16_t>(node.whole("follow_bits", out.follow_bits));
+  if ((out.follow_bits & ~std::uint32_t{model::controlword::kMaker}) != 0)
     reading.fault("/state/follow_bits", "names bits that CiA 402 gives a meaning: it leaves 0xF800 to the makers");
-  if (node.has("velocity_lag_ms")) out.velocity_lag = milliseconds(node.whole("velocity_lag_ms", 0));
   for (const JsonNode& entry : node["velocity_modes"].elements()) {
     out.velocity_modes.push_back(static_cast<std::int16_t>(entry.whole().value_or(0)));
     reading.names_mode(out.velocity_modes.back(), entry.pointer());
@@ -53,7 +44,7 @@ void check_virtual(Reading& reading, const JsonNode& node) {
   const std::string ends = node.text("quick_stop_ends");
   if (ends.empty() || ends == "by_option")
     reading.fault("/state", "a virtual drive must say \"quick_stop_ends\": \"energised\" or \"torque_off\"");
-  if (reading.profile.state.gate_only && ends == "torque_off")
+  if (node.flag("gate_only", false) && ends == "torque_off")
     reading.fault("/state/quick_stop_ends", "excludes \"gate_only\": a bus that cannot take the torque away");
   constexpr std::size_t kEmulatedPerAxis = 3;
   if (reading.profile.objects.size() + kEmulatedPerAxis * reading.axes() > model::kMaxObjects)
@@ -61,61 +52,54 @@ void check_virtual(Reading& reading, const JsonNode& node) {
                   kEmulatedPerAxis, model::kMaxObjects);
 }
 
-void check_zeroes(Reading& reading, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string at = pointer_to("/state/zero_before_enable", i);
-    reading.each_named(names[i], at, [&](const Object& object) {
-      reading.needs_writable(object, at);
-      if (!object.numbers().holds(0)) reading.fault(at, "object \"{}\" does not take 0", object.name);
+void check_zeroes(Reading& reading, const JsonNode& names) {
+  for (const JsonNode& name : names.elements())
+    reading.each_named(name.text(), name.pointer(), [&](const Object& object) {
+      reading.needs_writable(object, name.pointer());
+      if (!object.numbers().holds(0)) reading.fault(name.pointer(), "object \"{}\" does not take 0", object.name);
     });
-  }
 }
 
-void read_reached(Reading& reading, const JsonNode& reached, StateSpec& out) {
-  out.reached = condition_in(reading, reached["when"]);
-  out.within = reached.whole("within", 0);
+void check_reached(Reading& reading, const JsonNode& reached) {
+  reading.condition(reached["when"]);
   if (reached.has("within") && reading.profile.find(Quantity::position_actual) == nullptr)
     reading.fault(reached.pointer("within"), "is judged by position_actual, which this profile does not have");
 }
 
 /// A method number as a key or an entry of a list.
 void add_method(Reading& reading, std::int64_t method, std::int64_t raw, const std::string& pointer) {
-  HomingSpec& out = reading.profile.homing;
-  if (!is_method(method)) return reading.fault(pointer, "{} is no homing method: they are -128 to 127", method);
-  for (const auto& [known, code] : out.methods)
+  auto& methods = reading.profile.state.homing_methods;
+  for (const auto& [known, code] : methods)
     if (code == raw && known != method) reading.fault(pointer, "homing method {} is {} as well", known, raw);
-  if (!out.methods.emplace(static_cast<std::int16_t>(method), raw).second)
+  if (!methods.emplace(static_cast<std::int16_t>(method), raw).second)
     reading.fault(pointer, "homing method {} is listed twice", method);
   reading.each_object_of(Quantity::homing_method, [&](const Object& object) {
     if (!object.numbers().holds(raw)) reading.fault(pointer, "{} does not fit object \"{}\"", raw, object.name);
   });
 }
 
-void read_need(Reading& reading, const JsonNode& node) {
+void check_need(Reading& reading, const JsonNode& node) {
   const std::int64_t method = whole_number(node.key()).value_or(INT64_MAX);
-  HomingSpec& homing = reading.profile.homing;
-  if (!is_method(method) || !homing.methods.contains(static_cast<std::int16_t>(method)))
+  if (!reading.profile.state.homing_methods.contains(static_cast<std::int16_t>(method)))
     return reading.fault(node.pointer(), "\"{}\" is not under /homing/methods", node.key());
-  HomingSpec::Need out{node.names("any_of"), node.whole("equals", 0)};
-  for (const std::string& name : out.any_of)
+  const std::int64_t equals = node.whole("equals", 0);
+  for (const std::string& name : node.names("any_of"))
     reading.each_named(name, node.pointer("any_of"), [&](const Object& object) {
       reading.needs_readable(object, node.pointer("any_of"));
-      if (!object.numbers().holds(out.equals))
-        reading.fault(node.pointer("equals"), "{} does not fit object \"{}\"", out.equals, object.name);
+      if (!object.numbers().holds(equals))
+        reading.fault(node.pointer("equals"), "{} does not fit object \"{}\"", equals, object.name);
     });
-  homing.needs.emplace(static_cast<std::int16_t>(method), std::move(out));
 }
 
 /// Judged by the position after homing, so of the object that position_actual comes from.
-void read_homed_at(Reading& reading, const JsonNode& node) {
-  HomingSpec& out = reading.profile.homing;
-  out.homed_at = condition_in(reading, node);
+void check_homed_at(Reading& reading, const JsonNode& node) {
   if (!node) return;
+  reading.condition(node);
   if (!reading.profile.state.is_virtual)
     return reading.fault(node.pointer(), "belongs to a virtual drive: the statusword of this one tells it");
   const QuantitySpec* position = reading.profile.find(Quantity::position_actual);
   const auto& objects = position == nullptr ? std::vector<std::string>() : position->objects;
-  if (out.homed_at && std::ranges::find(objects, out.homed_at->object) == objects.end())
+  if (std::ranges::find(objects, node.text("object")) == objects.end())
     reading.fault(node.pointer(), "must look at the object of position_actual");
 }
 
@@ -126,17 +110,11 @@ void read_state(Reading& reading) {
   if (!section.is_object()) return;
   StateSpec& out = reading.profile.state;
   out.is_virtual = section.text("model") == "virtual";
-  out.setpoint_acknowledge = section.flag("setpoint_acknowledge", !out.is_virtual);
-  read_makers_facts(reading, section, out);
-  out.gate_only = section.flag("gate_only", false);
   out.quick_stop_energised = section.text("quick_stop_ends") != "torque_off";
-  out.zero_before_enable = section.names("zero_before_enable");
-  check_zeroes(reading, out.zero_before_enable);
-  out.enabled = condition_in(reading, section["enabled"]);
-  out.fault = condition_in(reading, section["fault"]);
-  out.moving = condition_in(reading, section["moving"]);
-  out.limit = condition_in(reading, section["limit"]);
-  read_reached(reading, section["reached"], out);
+  read_makers_facts(reading, section, out.cia402);
+  check_zeroes(reading, section["zero_before_enable"]);
+  for (const char* key : {"enabled", "fault", "moving", "limit"}) reading.condition(section[key]);
+  check_reached(reading, section["reached"]);
   if (out.is_virtual)
     check_virtual(reading, section);
   else
@@ -150,39 +128,31 @@ void read_state(Reading& reading) {
 
 void read_homing(Reading& reading) {
   const JsonNode section = reading.document["homing"];
-  if (!section.is_object()) return;
-  HomingSpec& out = reading.profile.homing;
   for (const JsonNode& entry : section["methods"].elements())
     if (const auto method = entry.whole()) add_method(reading, *method, *method, entry.pointer());
   for (const JsonNode& entry : section["methods"].members())
     add_method(reading, whole_number(entry.key()).value_or(INT64_MAX), entry.whole().value_or(0), entry.pointer());
-  for (const JsonNode& need : section["needs"].members()) read_need(reading, need);
-  out.homed = condition_in(reading, section["homed"]);
-  out.failed = condition_in(reading, section["failed"]);
-  if (section.has("in_mode")) {
-    out.in_mode = static_cast<std::int16_t>(section.whole("in_mode", 0));
-    if (!reading.profile.modes.contains(*out.in_mode))
-      reading.fault("/homing/in_mode", "is no mode of this drive: /modes does not list it");
-  }
+  for (const JsonNode& need : section["needs"].members()) check_need(reading, need);
+  reading.condition(section["homed"]);
+  reading.condition(section["failed"]);
+  const auto mode = section.integer("in_mode");
+  if (mode && !reading.profile.modes.contains(static_cast<std::int16_t>(*mode)))
+    reading.fault("/homing/in_mode", "is no mode of this drive: /modes does not list it");
   if (reading.profile.state.is_virtual)
     for (const char* key : {"homed", "failed"})
       if (section.has(key))
         reading.fault(section.pointer(key), "is not looked at on a virtual drive: say \"homed_at\"");
-  read_homed_at(reading, section["homed_at"]);
+  check_homed_at(reading, section["homed_at"]);
 }
 
 /// What a virtual state is made from must be there on every protocol.
 void check_state_places(Reading& reading) {
-  const StateSpec& state = reading.profile.state;
-  if (!state.is_virtual) return;
-  for (const auto& [key, condition] :
-       {std::pair("enabled", &state.enabled), std::pair("fault", &state.fault), std::pair("moving", &state.moving)}) {
-    if (!condition->has_value()) continue;
-    reading.each_meaning((*condition)->object, [&reading, &key = key](const Object& object) {
+  if (!reading.profile.state.is_virtual) return;
+  for (const char* key : {"enabled", "fault", "moving"})
+    reading.each_meaning(reading.document["state"][key].text("object"), [&](const Object& object) {
       for (const auto& [protocol, unused] : reading.profile.protocols)
         reading.needs_address(object, protocol, pointer_to("/state", key));
     });
-  }
 }
 
 }  // namespace axisgate::profile

@@ -13,14 +13,14 @@ void read_constant(Reading& reading, const JsonNode& node) {
   out.text = node.text("text");
   if (const JsonNode standard = node["default"]) {
     out.standard = standard.rational();
-    if (!out.standard) reading.fault(standard.pointer(), "is no decimal number");
+    if (!out.standard) reading.fault(standard.pointer(), "is no exact number");
     if (out.required) reading.fault(node.pointer(), "\"required\" and \"default\" exclude each other");
   }
   if (const std::vector<JsonNode> range = node["range"].elements(); range.size() == 2) {
     out.min = range[0].rational();
     out.max = range[1].rational();
     if (!out.min || !out.max)
-      reading.fault(node.pointer("range"), "must be two decimal numbers");
+      reading.fault(node.pointer("range"), "must be two exact numbers");
     else if (out.max->to_double() < out.min->to_double())
       reading.fault(node.pointer("range"), "the first limit is above the second");
     else if (out.standard &&
@@ -50,15 +50,14 @@ std::vector<model::Factor> factors(Reading& reading, const JsonNode& list) {
 }
 
 /// What a rule of a drive's constant is made of: a number, an object, or a constant that is known beforehand.
-model::Factor operand_in(Reading& reading, const JsonNode& node, const std::string& pointer) {
-  if (const std::optional<std::int64_t> number = node.whole()) return Rational(*number);
-  if (!node.is_string()) return Rational(1);
+void check_operand(Reading& reading, const JsonNode& node, const std::string& pointer) {
+  if (node.whole() || node.rational() || !node.is_string()) return;
   const std::string name = node.text();
   const auto constant = reading.profile.constants.find(name);
   if (constant != reading.profile.constants.end()) {
     if (constant->second.from_drive)
       reading.fault(pointer, "constant \"{}\" is itself read from the drive: name the objects it comes from", name);
-    return name;
+    return;
   }
   std::size_t meanings = 0;
   reading.each_named(name, pointer, [&](const Object& object) {
@@ -70,53 +69,51 @@ model::Factor operand_in(Reading& reading, const JsonNode& node, const std::stri
                   "\"{0}\" is another object on each axis, and a constant is the whole drive's: name one of them, "
                   "\"{1}.{0}\"",
                   name, reading.profile.axes.front());
-  return name;
 }
 
-/// Whether it is the first of the two operators rather than the second.
-bool operator_in(Reading& reading, const JsonNode& node, std::string_view first, std::string_view second,
-                 const std::string& pointer) {
-  const std::string given = node.text();
-  if (given != first && given != second)
+void check_operator(Reading& reading, const JsonNode& node, std::string_view first, std::string_view second,
+                    const std::string& pointer) {
+  if (node.text() != first && node.text() != second)
     reading.fault(pointer, "{} is no operator here; use {} or {}", node.dump(), first, second);
-  return given == first;
 }
 
-void read_product(Reading& reading, const JsonNode& value, Constant::Rule& out) {
+/// ["a", "==", 5], or ["a", "present"].
+void check_condition(Reading& reading, const JsonNode& node) {
+  const std::vector<JsonNode> words = node.elements();
+  if (words.size() != 2 && words.size() != 3)
+    return reading.fault(node.pointer(), "is no condition: write [\"a\", \"==\", 5] or [\"a\", \"present\"]");
+  check_operand(reading, words[0], node.pointer());
+  if (words.size() > 2) {
+    check_operator(reading, words[1], "==", "!=", node.pointer());
+    return check_operand(reading, words[2], node.pointer());
+  }
+  if (words[1].text() != "present") reading.fault(node.pointer(), "{} is no word here; use present", words[1].dump());
+  if (!words[0].is_string() || words[0].rational() || reading.profile.constants.contains(words[0].text()))
+    reading.fault(node.pointer(), "only an object can be present");
+}
+
+void check_rule(Reading& reading, const JsonNode& node, bool last) {
+  for (const JsonNode& each : conditions_of(node)) check_condition(reading, each);
+  if (!node.has("if") && !last)
+    reading.fault(node.pointer(), "without \"if\" this rule always holds: those after it are never used");
+  const JsonNode value = node["value"];
   const std::vector<JsonNode> words = value.elements();
-  if (words.size() % 2 == 0) reading.fault(value.pointer(), "ends with an operator");
-  bool multiplies = true;
+  if (!words.empty() && words.size() % 2 == 0) reading.fault(value.pointer(), "ends with an operator");
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (k % 2 == 0)
-      (multiplies ? out.mul : out.div).push_back(operand_in(reading, words[k], value.pointer()));
+      check_operand(reading, words[k], value.pointer());
     else
-      multiplies = operator_in(reading, words[k], "*", "/", value.pointer());
+      check_operator(reading, words[k], "*", "/", value.pointer());
   }
-}
-
-Constant::Rule read_rule(Reading& reading, const JsonNode& node, bool last) {
-  Constant::Rule out;
-  const JsonNode condition = node["if"];
-  if (const std::vector<JsonNode> words = condition.elements(); words.size() == 3) {
-    out.conditional = true;
-    out.left = operand_in(reading, words[0], condition.pointer());
-    out.equal = operator_in(reading, words[1], "==", "!=", condition.pointer());
-    out.right = operand_in(reading, words[2], condition.pointer());
-  } else if (!condition && !last) {
-    reading.fault(node.pointer(), "without \"if\" this rule always holds: those after it are never used");
-  }
-  if (node["value"].is_array()) read_product(reading, node["value"], out);
-  return out;
 }
 
 }  // namespace
 
-void read_constant_rules(Reading& reading) {
-  for (auto& [name, constant] : reading.profile.constants) {
-    const JsonNode first = reading.document["constants"][name]["first"];
+void check_constant_rules(Reading& reading) {
+  for (const JsonNode& constant : reading.document["constants"].members()) {
+    const JsonNode first = constant["first"];
     const std::vector<JsonNode> rules = first.elements();
-    for (std::size_t i = 0; i < rules.size(); ++i)
-      constant.rules.push_back(read_rule(reading, rules[i], i + 1 == rules.size()));
+    for (std::size_t i = 0; i < rules.size(); ++i) check_rule(reading, rules[i], i + 1 == rules.size());
     if (!rules.empty() && rules.back().has("if"))
       reading.fault(first.pointer(), "the last rule needs no \"if\": else the constant may have no value");
   }
@@ -132,6 +129,9 @@ void read_units(Reading& reading) {
     out.base = model::base_named(node.text("base")).value_or(model::Base::rpm);
     out.mul = factors(reading, node["mul"]);
     out.div = factors(reading, node["div"]);
+    out.inverse = node.flag("inverse", false);
+    if (out.inverse && model::kind_of(out.base) != Kind::acceleration)
+      reading.fault(node.pointer("inverse"), "only a ramp, in rpm/s or rps/s, can be counted as a time");
     reading.profile.units.emplace(node.key(), std::move(out));
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "gateway/core/nearest.hpp"
@@ -20,11 +21,25 @@ void check_protocol(Resolving& r) {
                                   listed(keys_in(r.profile.protocols))));
 }
 
+/// Who says that the drive is one which its profile is not for has taken the wrong profile, or the wrong number.
+void check_identity(Resolving& r) {
+  constexpr std::array<std::string_view, 3> kNumbers{"vendor", "product", "revision"};
+  if (!r.profile.identity) return;
+  const std::optional<std::size_t> other = r.profile.identity->other_in(r.input.identity);
+  if (!other) return;
+  std::vector<std::string> own;
+  for (const std::uint32_t number : r.profile.identity->numbers[*other]) own.push_back(fmt::format("{:#010x}", number));
+  r.fault(fmt::format("/identity/{}", kNumbers[*other]),
+          fmt::format("is {:#010x}, but profile \"{}\" is for {}: for this drive take its own maker's profile, "
+                      "\"cia402-generic\", or one of yours that extends this with its own \"identity\"",
+                      *r.input.identity[*other], r.profile.name, listed(own)));
+}
+
 /// A constant that decides a mode tells why there are no more of them.
 std::string why_no_more(const Profile& profile, const std::string& name, const Constant& constant) {
-  if (!profile.configured_mode) return "";
-  const auto& names = profile.configured_mode->constants;
-  return std::ranges::find(names, name) == names.end() ? "" : ": " + constant.text;
+  const JsonNode names = profile.section("configured_mode")["constant"];
+  const auto decides = [&](const std::string& axis) { return of_axis(names, axis).text() == name; };
+  return std::ranges::any_of(profile.axes, decides) ? ": " + constant.text : "";
 }
 
 }  // namespace
@@ -36,25 +51,26 @@ model::ObjectId Resolving::id(std::string_view name, AxisSlot slot) const {
   return at == ids.end() ? model::kNoObject : at->second;
 }
 
-std::optional<model::Condition> Resolving::condition(const ConditionSpec& spec, AxisSlot slot) const {
-  model::Condition out;
-  out.object = id(spec.object, slot);
+std::optional<model::Condition> Resolving::condition(const JsonNode& node, AxisSlot slot,
+                                                     std::string_view object) const {
+  model::Condition out = condition_in(node);
+  out.object = id(node.text(object), slot);
   if (out.object == model::kNoObject) return std::nullopt;
-  out.mask = spec.mask;
-  out.test = spec.test;
-  out.values = spec.values;
-  if (spec.constant.empty()) return out;
-  const auto value = constants.find(spec.constant);
-  const auto number = value == constants.end() ? std::nullopt : value->second.scale(spec.times);
-  if (!number) return std::nullopt;
-  out.values = {*number};
+  for (const char* key : {"equals", "not_equals"}) {
+    if (!node[key].is_object()) continue;
+    const auto value = constants.find(node[key].text("constant"));
+    const auto number = value == constants.end() ? std::nullopt : value->second.scale(node[key].whole("times", 1));
+    if (!number) return std::nullopt;
+    out.values = {*number};
+  }
   return out;
 }
 
-std::optional<std::int64_t> Resolving::raw(const std::vector<ValueSpec>& values, std::string_view name,
-                                           AxisSlot slot) const {
-  const std::size_t which = values.size() > 1 && motor(slot) < values.size() ? motor(slot) : 0;
-  const ValueSpec& value = values.at(which);
+WriteValue Resolving::value_of(const JsonNode& write, AxisSlot slot) const {
+  return value_in(of_axis(write["value"], profile.axes[motor(slot)]));
+}
+
+std::optional<std::int64_t> Resolving::raw(const WriteValue& value, std::string_view name, AxisSlot slot) const {
   if (const auto* literal = std::get_if<std::int64_t>(&value)) return *literal;
   const Object* object = profile.find(name, motor(slot));
   if (object == nullptr || !std::holds_alternative<model::Amount>(value)) return std::nullopt;
@@ -64,44 +80,69 @@ std::optional<std::int64_t> Resolving::raw(const std::vector<ValueSpec>& values,
   const std::optional<Rational> registers = model::in_registers(std::get<model::Amount>(value), constants, per_rev);
   const std::optional<Rational> scale = model::raw_per_base(unit, constants);
   if (!registers || !scale) return std::nullopt;
-  return (*registers * base_per_register(unit.base, per_rev) * *scale).scale(1);
+  const Rational amount = *registers * base_per_register(unit.base, per_rev);
+  if (unit.inverse) return amount.numerator() == 0 ? std::nullopt : (*scale / amount).scale(1);
+  return (amount * *scale).scale(1);
 }
 
-std::optional<model::ObjectWrite> Resolving::write(const WriteSpec& spec, AxisSlot slot) const {
-  const model::ObjectId object = id(spec.object, slot);
+std::optional<model::ObjectWrite> Resolving::write(const JsonNode& node, AxisSlot slot) const {
+  const model::ObjectId object = id(node.text("write"), slot);
   if (object == model::kNoObject) return std::nullopt;
-  const std::optional<std::int64_t> value = raw(spec.values, spec.object, slot);
+  const std::optional<std::int64_t> value = raw(value_of(node, slot), node.text("write"), slot);
   if (!value) return std::nullopt;
-  return model::ObjectWrite{object, *value, spec.why};
+  return model::ObjectWrite{object, *value, node.text("why")};
 }
 
-std::optional<model::FactoryWrite> Resolving::factory_write(const WriteSpec& spec, AxisSlot slot) {
-  const Object* object = profile.find(spec.object, motor(slot));
-  const model::ObjectId written = id(spec.object, slot);
+std::optional<model::FactoryWrite> Resolving::factory_write(const JsonNode& node, AxisSlot slot) {
+  const Object* object = profile.find(node.text("write"), motor(slot));
+  const model::ObjectId written = id(node.text("write"), slot);
   if (object == nullptr || written == model::kNoObject) return std::nullopt;
-  model::FactoryWrite out{written, spec.instead_of, {}, {}, spec.why};
-  if (const auto* literal = std::get_if<std::int64_t>(&spec.values.at(0))) {
+  model::FactoryWrite out{written, node.wholes("instead_of"), {}, {}, node.text("why")};
+  const WriteValue value = value_of(node, slot);
+  if (const auto* literal = std::get_if<std::int64_t>(&value)) {
     out.amount = Rational(*literal);
   } else {
     const model::Unit& unit = profile.units.find(object->unit)->second;
     const Rational per_rev(1);  // units per revolution cancel out here: any number will do
-    const auto registers = model::in_registers(std::get<model::Amount>(spec.values.at(0)), constants, per_rev);
+    const auto registers = model::in_registers(std::get<model::Amount>(value), constants, per_rev);
     const std::optional<model::ScaleRecipe> scale = recipe(unit);
     if (!registers || !scale) return std::nullopt;
     out.amount = *registers * base_per_register(unit.base, per_rev);
+    if (unit.inverse && out.amount.numerator() == 0) return std::nullopt;
+    if (unit.inverse) out.amount = out.amount.inverse();
     out.recipe = *scale;
   }
   out.recipe.raw = object->numbers();
   return out;
 }
 
-std::optional<model::DriveConstant::Operand> Resolving::operand(const model::Factor& factor) const {
-  if (const std::optional<Rational> number = model::value_of(factor, constants))
-    return model::DriveConstant::Operand{model::kNoObject, *number};
-  const auto& name = std::get<std::string>(factor);
+std::optional<model::DriveConstant::Operand> Resolving::operand(const JsonNode& node) const {
+  using Operand = model::DriveConstant::Operand;
+  if (const std::optional<std::int64_t> number = node.whole()) return Operand{model::kNoObject, Rational(*number)};
+  if (const std::optional<Rational> number = node.rational()) return Operand{model::kNoObject, *number};
+  const std::string name = node.text();
+  if (const auto known = constants.find(name); known != constants.end())
+    return Operand{model::kNoObject, known->second};
   const model::ObjectId object = profile.constants.contains(name) ? model::kNoObject : id(name, 0);
   if (object == model::kNoObject) return std::nullopt;
-  return model::DriveConstant::Operand{object, Rational(1)};
+  return Operand{object, Rational(1)};
+}
+
+/// False: a condition names what this protocol does not have, so that the rule cannot be judged. `never`: nor can it
+/// hold.
+bool Resolving::conditions(const JsonNode& node, model::DriveConstant::Rule& out, bool& never) const {
+  using enum model::DriveConstant::Condition::Test;
+  for (const JsonNode& each : conditions_of(node)) {
+    const std::vector<JsonNode> words = each.elements();
+    const auto test = words.size() == 2 ? present : words.at(1).text() == "==" ? equal : not_equal;
+    const auto left = operand(words.at(0));
+    const auto right = test == present ? left : operand(words.at(2));
+    never = test == present && !left;
+    if (never) return true;
+    if (!left || !right) return false;
+    out.conditions.push_back({test, *left, *right});
+  }
+  return true;
 }
 
 /// Position in the model, where it is put at its first need. None where it is not read from the drive, or a rule needs
@@ -109,23 +150,19 @@ std::optional<model::DriveConstant::Operand> Resolving::operand(const model::Fac
 std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
   const auto at = std::ranges::find(model.constants, name, &model::DriveConstant::name);
   if (at != model.constants.end()) return static_cast<std::size_t>(at - model.constants.begin());
-  model::DriveConstant out;
-  out.name = name;
-  for (const Constant::Rule& spec : profile.constants.find(name)->second.rules) {
-    model::DriveConstant::Rule rule{spec.conditional, spec.equal, {}, {}, {}, {}};
-    if (spec.conditional) {
-      const auto left = operand(spec.left);
-      const auto right = operand(spec.right);
-      if (!left || !right) return std::nullopt;
-      rule.left = *left;
-      rule.right = *right;
-    }
-    for (const auto& [from, to] : {std::pair(&spec.mul, &rule.mul), std::pair(&spec.div, &rule.div)}) {
-      for (const model::Factor& factor : *from) {
-        const auto one = operand(factor);
-        if (!one) return std::nullopt;
-        to->push_back(*one);
-      }
+  const Constant& constant = profile.constants.find(name)->second;
+  model::DriveConstant out{name, {}, constant.min, constant.max};
+  for (const JsonNode& node : profile.section("constants")[name]["first"].elements()) {
+    model::DriveConstant::Rule rule{{}, node["value"].is_string(), {}, {}};
+    bool never = false;
+    if (!conditions(node, rule, never)) return std::nullopt;
+    if (never) continue;
+    const std::vector<JsonNode> words =
+        node["value"].elements();  // operands, and an operator before each but the first
+    for (std::size_t k = 0; k < words.size(); k += 2) {
+      const auto one = operand(words[k]);
+      if (!one) return std::nullopt;
+      (k > 0 && words[k - 1].text() == "/" ? rule.div : rule.mul).push_back(*one);
     }
     out.rules.push_back(std::move(rule));
   }
@@ -220,6 +257,14 @@ void resolve_objects(Resolving& r) {
     r.ids.emplace(object.name, static_cast<model::ObjectId>(r.model.objects.size()));
     r.model.objects.push_back(std::move(def));
   }
+  for (const Object& object : r.profile.objects) {
+    const auto at = r.ids.find(object.name);
+    if (!object.part || at == r.ids.end()) continue;
+    const model::ObjectId whole = r.ids.find(object.part->of)->second;
+    r.model.objects[at->second].part = {whole, object.part->from, object.part->count};
+    // A write of the whole would go past what holds for its part.
+    if (object.writable) r.model.objects[whole].mailbox_reads_only = true;
+  }
 }
 
 std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded, const ResolveInput& input) {
@@ -229,6 +274,7 @@ std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile&
     return r.faults;
   }
   check_protocol(r);
+  check_identity(r);
   resolve_constants(r);
   if (input.axes.empty() || input.axes.size() > loaded.profile.axes.size())
     r.fault("/axes", fmt::format("profile \"{}\" is a drive of {} axes, {} are configured", loaded.profile.name,

@@ -25,19 +25,9 @@ struct AxisLimits {
   friend bool operator==(const AxisLimits&, const AxisLimits&) = default;
 };
 
-/// An axis of the configuration, in register units (design 2).
-struct ResolveAxis {
-  AxisNumber number = 0;
-  std::string name;
-  Rational units_per_rev{10000};
-  bool inverted = false;
+/// An axis of the configuration.
+struct ResolveAxis : model::AxisSettings {
   AxisLimits limits;
-  std::int64_t standstill_velocity = 1000;  ///< 0.001 rpm
-  std::optional<std::int16_t> homing_method;
-  Duration homing_timeout = std::chrono::seconds(60);
-  LeaseRules lease;
-  model::WatchRules watch;
-  Duration jog_timeout = std::chrono::milliseconds(500);
   std::string motor;  ///< "A", "B": which of the drive's motors; empty: as many as stand before it in the list
   friend bool operator==(const ResolveAxis&, const ResolveAxis&) = default;
 };

@@ -30,34 +30,33 @@ void hold(Resolving& r, const std::string& name, std::int64_t raw, const std::st
   }
 }
 
-void resolve_mapping(Resolving& r, const CanopenSpec& spec) {
-  r.model.canopen.unused_tpdos = spec.unused_tpdos;
-  for (const CanopenSpec::Tpdo& tpdo : spec.tpdos) {
-    model::TpdoProperties out;
-    out.number = tpdo.number;
-    out.type = tpdo.type;
-    out.inhibit = tpdo.inhibit;
-    out.inhibit_time = tpdo.inhibit_time;
-    out.event_ms = tpdo.event_ms;
-    for (const std::string& name : tpdo.map)
-      if (const auto id = r.ids.find(name); id != r.ids.end()) out.map.push_back(id->second);
+/// A map holds positions in the profile so far.
+void resolve_mapping(Resolving& r, const std::vector<model::TpdoProperties>& profiles) {
+  model::CanopenProperties& facts = r.model.canopen;
+  facts.tpdos.clear();
+  for (const model::TpdoProperties& tpdo : profiles) {
+    model::TpdoProperties& out = facts.tpdos.emplace_back(tpdo);
+    out.map.clear();
+    for (const model::ObjectId position : tpdo.map)
+      if (const auto id = r.ids.find(r.profile.objects[position].name); id != r.ids.end())
+        out.map.push_back(id->second);
+    if (!out.map.empty()) continue;
     // Nothing of it is wanted: it carries the values of a motor that is no axis.
-    if (out.map.empty())
-      r.model.canopen.unused_tpdos.push_back(out.number);
-    else
-      r.model.canopen.tpdos.push_back(std::move(out));
+    facts.unused_tpdos.push_back(tpdo.number);
+    facts.tpdos.pop_back();
   }
 }
 
-void resolve_loss(Resolving& r, const LossSpec& loss, const CanopenSpec& spec) {
+void resolve_loss(Resolving& r, const ProtocolSpec& protocol) {
+  const LossSpec& loss = protocol.loss;
   model::CanopenProperties& facts = r.model.canopen;
+  const JsonNode guard = r.profile.section("protocols")["canopen"]["guard"];
   if (loss.by == LossSpec::By::heartbeat_consumer) {
     facts.own_heartbeat = loss.after / kHeartbeatsBeforeLoss;
-    hold(r, loss.object, std::int64_t{model::kOwnNode} << 16 | loss.after / milliseconds(1),
-         "the drive notices when the gateway's heartbeat stays away");
+    hold(r, loss.object, loss.value, "the drive notices when the gateway's heartbeat stays away");
   } else if (loss.by == LossSpec::By::life_guarding) {
-    hold(r, spec.guard_time_object, spec.guard_time / milliseconds(1), "the gateway guards the node so often");
-    hold(r, spec.life_factor_object, spec.life_factor, "so many guard times without a frame are a dead gateway");
+    hold(r, guard.text("time_object"), facts.guard_time / milliseconds(1), "the gateway guards the node so often");
+    hold(r, guard.text("factor_object"), facts.life_factor, "so many guard times without a frame are a dead gateway");
     hold(r, loss.object, loss.value, "the drive's reaction to a dead gateway");
   }
 }
@@ -65,18 +64,12 @@ void resolve_loss(Resolving& r, const LossSpec& loss, const CanopenSpec& spec) {
 }  // namespace
 
 void resolve_canopen(Resolving& r, const ProtocolSpec& protocol) {
-  const CanopenSpec& spec = protocol.canopen;
-  model::CanopenProperties& facts = r.model.canopen;
-  facts.heartbeat = spec.heartbeat;
-  facts.guard_time = spec.guard_time;
-  facts.life_factor = spec.life_factor;
-  facts.sync = spec.sync;
-  facts.boot = spec.boot;
-  facts.sdo_block = spec.sdo_block;
-  facts.confirm = spec.confirm;
-  facts.identity = r.input.identity;
-  resolve_mapping(r, spec);
-  resolve_loss(r, protocol.loss, spec);
+  r.model.canopen = protocol.canopen;
+  r.model.canopen.identity = r.input.identity;
+  if (r.profile.identity && !r.model.canopen.identity[0])
+    r.model.canopen.identity[0] = r.profile.identity->numbers[0].front();
+  resolve_mapping(r, protocol.canopen.tpdos);
+  resolve_loss(r, protocol);
 }
 
 }  // namespace axisgate::profile

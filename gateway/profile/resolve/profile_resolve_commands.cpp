@@ -36,67 +36,82 @@ bool has_mode(const model::AxisModel& axis, std::int16_t mode) {
   return std::ranges::any_of(axis.modes, [&](const auto& row) { return row.first == mode; });
 }
 
-std::optional<model::Steps> steps_from(const Resolving& r, const std::vector<StepSpec>& specs, AxisSlot slot) {
+Errc outcome_named(const std::string& name) {
+  if (name == "busy") return Errc::busy;
+  if (name == "bad_value") return Errc::bad_value;
+  if (name == "not_reached") return Errc::not_reached;
+  return Errc::state_unsuitable;
+}
+
+/// None of them: what is written cannot be had on this axis.
+bool put_value(const Resolving& r, const JsonNode& node, AxisSlot slot, model::Step& out) {
+  const WriteValue value = r.value_of(node, slot);
+  if (const auto* quantity = std::get_if<Quantity>(&value)) {
+    out.source = model::Step::Source::quantity;
+    out.quantity = *quantity;
+  } else if (std::holds_alternative<SetPositionValue>(value)) {
+    out.source = model::Step::Source::set_position;
+    out.quantity = Quantity::position_actual;
+  } else {
+    const std::optional<std::int64_t> raw = r.raw(value, node.text("write"), slot);
+    out.literal = raw.value_or(0);
+    return raw.has_value();
+  }
+  return r.model.axes[slot].binding(out.quantity) != nullptr;
+}
+
+std::optional<model::Steps> steps_from(const Resolving& r, const JsonNode& owner, AxisSlot slot) {
+  using enum model::Step::Verb;
   model::Steps out;
-  for (const StepSpec& spec : specs) {
+  for (const JsonNode& node : owner["steps"].elements()) {
     model::Step step;
-    step.verb = spec.verb;
-    step.object = r.id(spec.object, slot);
+    const char* verb = node.has("write") ? "write" : node.has("wait") ? "wait" : "require";
+    step.verb = node.has("write") ? write : node.has("wait") ? wait : require;
+    step.object = r.id(node.text(verb), slot);
     if (step.object == model::kNoObject) return std::nullopt;
-    step.limit = spec.limit;
-    step.optional = spec.optional;
-    step.otherwise = spec.otherwise;
-    if (spec.verb != model::Step::Verb::write) {
-      const std::optional<model::Condition> until = r.condition(spec.until, slot);
-      if (!until) return std::nullopt;
-      step.until = *until;
-    } else if (const auto* quantity = std::get_if<Quantity>(&spec.values.front())) {
-      step.source = model::Step::Source::quantity;
-      step.quantity = *quantity;
-      if (r.model.axes[slot].binding(*quantity) == nullptr) return std::nullopt;
-    } else if (std::holds_alternative<SetPositionValue>(spec.values.front())) {
-      step.source = model::Step::Source::set_position;
-      step.quantity = Quantity::position_actual;
-      if (r.model.axes[slot].binding(step.quantity) == nullptr) return std::nullopt;
+    step.limit = node.milliseconds("ms", {});
+    step.optional = node.flag("optional", false);
+    step.otherwise = step.verb == wait ? Errc::not_reached : outcome_named(node.text("else"));
+    if (step.verb == write) {
+      if (!put_value(r, node, slot, step)) return std::nullopt;
     } else {
-      const std::optional<std::int64_t> raw = r.raw(spec.values, spec.object, slot);
-      if (!raw) return std::nullopt;
-      step.literal = *raw;
+      step.until = r.condition(node, slot, verb).value();  // its object is there
     }
     out.push_back(std::move(step));
   }
   return out;
 }
 
-std::optional<model::CommandDef> command_from(const Resolving& r, const CommandSpec& spec, AxisSlot slot) {
+std::optional<model::CommandDef> command_from(const Resolving& r, const CommandEntry& entry, AxisSlot slot) {
   const model::AxisModel& axis = r.model.axes[slot];
-  const Needs needs = needs_of(spec.command, axis.virtual_axis.has_value());
+  const Needs needs = needs_of(entry.command, axis.virtual_axis.has_value());
   if (needs.mode != 0 && !has_mode(axis, needs.mode)) return std::nullopt;
   if (std::ranges::any_of(needs.quantities, [&](Quantity q) { return axis.binding(q) == nullptr; }))
     return std::nullopt;
   model::CommandDef out;
-  out.zero_only = spec.zero_only;
-  out.quick_stop_otherwise = spec.quick_stop_otherwise;
-  out.repeat_on_change = spec.repeat_on_change;
-  for (const CommandSpec::Variant& variant : spec.variants) {
-    std::optional<model::Steps> steps = steps_from(r, variant.steps, slot);
-    if (steps)
-      out.variants.push_back({variant.modes, std::move(*steps)});
-    else if (!spec.quick_stop_otherwise)
-      return std::nullopt;
+  out.zero_only = entry.node.flag("zero_only", false);
+  out.quick_stop_otherwise = entry.node.has("otherwise");
+  out.repeat_on_change = entry.node.flag("repeat_on_change", false);
+  for (const JsonNode& variant : entry.node["variants"].elements()) {
+    std::optional<model::Steps> steps = steps_from(r, variant, slot);
+    if (!steps && !out.quick_stop_otherwise) return std::nullopt;
+    if (!steps) continue;
+    model::CommandDef::Variant& to = out.variants.emplace_back();
+    for (const std::int64_t mode : variant.wholes("modes")) to.modes.push_back(static_cast<std::int16_t>(mode));
+    to.steps = std::move(*steps);
   }
-  std::optional<model::Steps> steps = steps_from(r, spec.steps, slot);
+  std::optional<model::Steps> steps = steps_from(r, entry.node, slot);
   if (!steps) return std::nullopt;
   out.steps = std::move(*steps);
   return out;
 }
 
-const CommandSpec* spec_for(const Profile& profile, Command command, const std::string& protocol) {
-  const CommandSpec* general = nullptr;
-  for (const CommandSpec& spec : profile.commands) {
-    if (spec.command != command) continue;
-    if (spec.protocol == protocol) return &spec;
-    if (spec.protocol.empty()) general = &spec;
+const CommandEntry* entry_for(const Profile& profile, Command command, const std::string& protocol) {
+  const CommandEntry* general = nullptr;
+  for (const CommandEntry& entry : profile.commands) {
+    if (entry.command != command) continue;
+    if (entry.protocol == protocol) return &entry;
+    if (entry.protocol.empty()) general = &entry;
   }
   return general;
 }
@@ -107,14 +122,14 @@ void resolve_commands(Resolving& r, AxisSlot slot) {
   model::AxisModel& axis = r.model.axes[slot];
   for (std::uint8_t number = 1; number <= kLastCommand; ++number) {
     const auto command = static_cast<Command>(number);
-    const CommandSpec* spec = spec_for(r.profile, command, r.input.protocol);
-    if (spec == nullptr && command != Command::halt) continue;
-    if (spec != nullptr && spec->as_absolute) {
+    const CommandEntry* entry = entry_for(r.profile, command, r.input.protocol);
+    if (entry == nullptr && command != Command::halt) continue;
+    if (entry != nullptr && entry->node.has("as")) {
       // Without steps of its own the planner carries it out as the absolute move it comes to.
       if (axis.command(Command::move_absolute)) axis.supported_commands |= 1U << number;
       continue;
     }
-    if (spec != nullptr) axis.commands[number] = command_from(r, *spec, slot);
+    if (entry != nullptr) axis.commands[number] = command_from(r, *entry, slot);
     // "Where a drive has no halt, the profile names the replacement, else quick_stop" (design 3.4).
     if (command == Command::halt && !axis.commands[number]) axis.commands[number].emplace().quick_stop_otherwise = true;
     if (axis.commands[number]) axis.supported_commands |= 1U << number;

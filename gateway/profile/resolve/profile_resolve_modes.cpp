@@ -11,39 +11,27 @@
 namespace axisgate::profile {
 namespace {
 
-const std::string& mode_constant(const ConfiguredModeSpec& spec, AxisSlot motor) {
-  return motor < spec.constants.size() ? spec.constants[motor] : spec.constants.front();
-}
-
-/// The constants that somebody would have to give, so that this object can be converted.
-std::string missing_constants(const Resolving& r, const std::vector<const std::string*>& units) {
-  std::vector<std::string> out;
-  for (const std::string* name : units) {
-    const auto unit = r.profile.units.find(*name);
-    if (unit == r.profile.units.end()) continue;
-    for (const auto* factors : {&unit->second.mul, &unit->second.div})
-      for (const model::Factor& factor : *factors)
-        if (const auto* constant = std::get_if<std::string>(&factor); constant && !r.constants.contains(*constant))
-          out.push_back(*constant);
-  }
-  return listed(out);
+/// On this protocol each motor has the mode that it was set to, and no other.
+bool is_fixed(const Resolving& r) {
+  const std::vector<std::string> protocols = r.profile.section("configured_mode").names("fixed_on");
+  return std::ranges::find(protocols, r.input.protocol) != protocols.end();
 }
 
 /// A fixed mode whose set-point the gateway cannot give leaves an axis that can do nothing.
 void check_fixed_mode(Resolving& r, AxisSlot slot) {
   const model::AxisModel& axis = r.model.axes[slot];
-  const auto& spec = r.profile.configured_mode;
-  if (!axis.modes.empty() || !spec || !spec->is_fixed_on(r.input.protocol)) return;
-  const std::string& name = mode_constant(*spec, r.motor(slot));
+  if (!axis.modes.empty() || !is_fixed(r)) return;
   const auto mode = r.configured_mode(slot);
   const auto setpoint = mode ? setpoint_of(*mode) : std::nullopt;
   const QuantitySpec* quantity = setpoint ? r.profile.find(*setpoint) : nullptr;
-  std::vector<const std::string*> units;
+  std::vector<std::string> names;
   if (quantity != nullptr)
     for (const std::string& object : quantity->objects)
-      if (const Object* found = r.profile.find(object, r.motor(slot))) units.push_back(&quantity->unit_of(*found));
-  const std::string missing = missing_constants(r, units);
-  r.fault(pointer_to("/constants", name),
+      if (const Object* found = r.profile.find(object, r.motor(slot)))
+        if (const auto unit = r.profile.units.find(quantity->unit_of(*found)); unit != r.profile.units.end())
+          std::ranges::move(r.missing(unit->second), std::back_inserter(names));
+  const std::string missing = listed(names);
+  r.fault(pointer_to("/constants", r.mode_constant(r.motor(slot))),
           "chooses a mode whose set-point cannot be given" + (missing.empty() ? "" : ": give also " + missing));
 }
 
@@ -51,14 +39,17 @@ void check_fixed_mode(Resolving& r, AxisSlot slot) {
 
 AxisSlot Resolving::motor(AxisSlot slot) const { return slot < motors.size() ? motors[slot] : slot; }
 
+std::string Resolving::mode_constant(AxisSlot motor) const {
+  return of_axis(profile.section("configured_mode")["constant"], profile.axes[motor]).text();
+}
+
 AxisSlot Resolving::axis_of(AxisSlot motor) const {
   const auto at = std::ranges::find(motors, motor);
   return at == motors.end() ? kNoAxis : static_cast<AxisSlot>(at - motors.begin());
 }
 
 std::optional<std::int16_t> Resolving::configured_mode(AxisSlot slot) const {
-  if (!profile.configured_mode) return std::nullopt;
-  const auto value = constants.find(mode_constant(*profile.configured_mode, motor(slot)));
+  const auto value = constants.find(mode_constant(motor(slot)));
   if (value == constants.end()) return std::nullopt;
   for (const auto& [mode, raw] : profile.modes)
     if (value->second == Rational(raw)) return mode;
@@ -66,13 +57,14 @@ std::optional<std::int16_t> Resolving::configured_mode(AxisSlot slot) const {
 }
 
 bool Resolving::can_have(AxisSlot slot, std::int16_t mode) const {
-  const auto& spec = profile.configured_mode;
-  if (!spec || configured_mode(slot) == mode) return true;
-  return !spec->is_fixed_on(input.protocol) && std::ranges::find(spec->only, mode) == spec->only.end();
+  const JsonNode section = profile.section("configured_mode");
+  if (!section || configured_mode(slot) == mode) return true;
+  const std::vector<std::int64_t> only = section.wholes("only");
+  return !is_fixed(*this) && std::ranges::find(only, mode) == only.end();
 }
 
 bool Resolving::can_follow(AxisSlot slot, Quantity setpoint) const {
-  if (!profile.configured_mode) return true;
+  if (!profile.section("configured_mode")) return true;
   bool is_setpoint = false;
   for (const auto& [mode, raw] : profile.modes) {
     if (setpoint_of(mode) != setpoint) continue;
@@ -100,14 +92,13 @@ void resolve_motors(Resolving& r) {
                                    name.empty() ? ", which this axis is by its place in the list," : "", taken));
     r.motors.push_back(motor);
   }
-  if (!r.profile.configured_mode || !r.faults.empty()) return;
+  if (!r.profile.section("configured_mode") || !r.faults.empty()) return;
   for (std::size_t i = 0; i < r.motors.size(); ++i) {
     if (r.configured_mode(static_cast<AxisSlot>(i))) continue;
     std::vector<std::string> numbers;
     for (const auto& [mode, raw] : r.profile.modes) numbers.push_back(std::to_string(raw));
     std::ranges::sort(numbers);
-    r.fault(pointer_to("/constants", mode_constant(*r.profile.configured_mode, r.motors[i])),
-            "must be one of " + listed(numbers));
+    r.fault(pointer_to("/constants", r.mode_constant(r.motors[i])), "must be one of " + listed(numbers));
   }
 }
 
@@ -122,13 +113,14 @@ void resolve_modes(Resolving& r, AxisSlot slot) {
     axis.modes.insert(configured == mode ? axis.modes.begin() : axis.modes.end(), entry);
     if (mode >= 1 && mode <= 16) axis.supported_modes |= static_cast<std::uint16_t>(1U << (mode - 1));
   }
-  axis.mode_needs_disabled = r.profile.configured_mode && r.profile.configured_mode->needs_disabled;
+  axis.mode_needs_disabled = r.profile.section("configured_mode").flag("needs_disabled", false);
   check_fixed_mode(r, slot);
-  const auto& keepalive = r.profile.keepalive;
-  if (!keepalive || !keepalive->is_on(r.input.protocol)) return;
-  for (const auto& [mode, name] : keepalive->resend) {
-    const bool offered = std::ranges::any_of(axis.modes, [&mode = mode](const auto& m) { return m.first == mode; });
-    if (const model::ObjectId id = r.id(name, slot); offered && id != model::kNoObject)
+  const JsonNode keepalive = r.profile.section("keepalive");
+  if (!is_on(keepalive, r.input.protocol)) return;
+  for (const JsonNode& resent : keepalive["resend"].members()) {
+    const auto mode = static_cast<std::int16_t>(whole_number(resent.key()).value());
+    const bool offered = std::ranges::any_of(axis.modes, [&](const auto& m) { return m.first == mode; });
+    if (const model::ObjectId id = r.id(resent.text(), slot); offered && id != model::kNoObject)
       axis.keep_alive.emplace_back(mode, id);
   }
 }

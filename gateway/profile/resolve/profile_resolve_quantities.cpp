@@ -121,12 +121,14 @@ class AxisQuantities {
     return out;
   }
 
-  /// error_code is read from no object where the profile has an alarm table: it follows from the fault words.
+  /// error_code is read from no object where the profile has an alarm table: it follows from the fault words, or from
+  /// what the drive sends.
   std::optional<model::Binding> from_alarm_table() {
-    const auto there = [&](const AlarmSpec& row) {
-      return r_.id(r_.profile.fault_words[row.word], slot_) != model::kNoObject;
+    const auto there = [&](const model::AlarmRow& row) {
+      return r_.id(r_.profile.fault_words()[row.word], slot_) != model::kNoObject;
     };
-    if (!std::ranges::any_of(r_.profile.alarms, there)) return std::nullopt;
+    if (!std::ranges::any_of(r_.profile.alarms, there) && !r_.profile.has_emergency_word(r_.input.protocol))
+      return std::nullopt;
     model::Binding out;
     out.quantity = Quantity::error_code;
     out.limits = range_of(RegisterType::u16);
@@ -160,7 +162,9 @@ class AxisQuantities {
         refuse_limit(row, r_.missing(unit));
         return std::nullopt;
       }
-      recipe->fixed = recipe->fixed * base_per_register(unit.base, axis_.units_per_rev);
+      const Rational base = base_per_register(unit.base, axis_.units_per_rev);
+      recipe->fixed = unit.inverse ? recipe->fixed / base : recipe->fixed * base;
+      out.inverse = unit.inverse;
       if (axis_.inverted && is_directed(row)) recipe->fixed = recipe->fixed * Rational(-1);
       out.scaled = !recipe->waits();
       if (out.scaled)
@@ -195,7 +199,7 @@ class AxisQuantities {
 
   /// A drive that numbers its homing methods otherwise: the register has CiA 402's.
   void translate(model::Binding& out) const {
-    const auto& methods = r_.profile.homing.methods;
+    const auto& methods = r_.profile.state.homing_methods;
     if (std::ranges::all_of(methods, [](const auto& row) { return row.first == row.second; })) return;
     out.codes.assign(methods.begin(), methods.end());
   }
@@ -206,7 +210,7 @@ class AxisQuantities {
     if (!out.codes.empty())
       out.limits = {out.codes.front().first, out.codes.back().first};
     else if (out.scaled)
-      out.limits = model::intersection(out.limits, model::registers_within(raw, out.raw_per_unit));
+      out.limits = model::intersection(out.limits, model::registers_within(raw, out.raw_per_unit, out.inverse));
     out.limits = model::intersection(out.limits, profile_limit(spec));
     const AxisLimit own = axis_limit(axis_, row);
     const Range allowed = model::intersection(out.limits, own.range);

@@ -23,10 +23,6 @@ model::ObjectId make_object(Resolving& r, AxisSlot slot, const std::string& name
   return static_cast<model::ObjectId>(r.model.objects.size() - 1);
 }
 
-std::optional<model::Condition> condition(const Resolving& r, const std::optional<ConditionSpec>& spec, AxisSlot slot) {
-  return spec ? r.condition(*spec, slot) : std::nullopt;
-}
-
 /// A motor whose mode is fixed must not be sent another mode's set-point: where they share a place, a speed of 0 would
 /// be the position 0.
 bool may_be_zeroed(const Resolving& r, const std::string& name, AxisSlot slot) {
@@ -50,18 +46,16 @@ void resolve_roles(Resolving& r, AxisSlot slot) {
   axis.mode = object_of(Quantity::mode);
   const model::ObjectId display = object_of(Quantity::mode_display);
   axis.mode_display = display == model::kNoObject ? axis.mode : display;
+  axis.cia402 = r.profile.state.cia402;
   axis.cia402.mode_display = axis.mode_display != axis.mode;
-  const StateSpec& state = r.profile.state;
-  axis.cia402.follow_bits = state.follow_bits.value_or(axis.cia402.follow_bits);
-  axis.cia402.velocity_modes = state.velocity_modes;
-  axis.velocity_lag = state.velocity_lag.value_or(axis.velocity_lag);
-  axis.cia402.setpoint_acknowledge = r.profile.state.is_virtual || r.profile.state.setpoint_acknowledge;
-  for (std::size_t i = 0; i < r.profile.fault_words.size(); ++i)
-    axis.fault_words[i] = r.id(r.profile.fault_words[i], slot);
-  for (const std::string& name : r.profile.state.zero_before_enable)
+  const JsonNode state = r.profile.section("state");
+  axis.velocity_lag = state.milliseconds("velocity_lag_ms", axis.velocity_lag);
+  const std::vector<std::string> words = r.profile.fault_words();
+  for (std::size_t i = 0; i < words.size(); ++i) axis.fault_words[i] = r.id(words[i], slot);
+  for (const std::string& name : state.names("zero_before_enable"))
     if (const model::ObjectId id = r.id(name, slot); id != model::kNoObject && may_be_zeroed(r, name, slot))
       axis.zero_before_enable.push_back(id);
-  axis.moving = condition(r, r.profile.state.moving, slot);
+  axis.moving = r.condition(state["moving"], slot);
 }
 
 /// Every object once, the fault first: a drive that is there always answers for it.
@@ -77,9 +71,8 @@ void add_state_sources(const model::VirtualProperties& facts, model::AxisModel& 
 }
 
 void resolve_machine(Resolving& r, AxisSlot slot) {
-  const StateSpec& spec = r.profile.state;
   model::AxisModel& axis = r.model.axes[slot];
-  if (!spec.is_virtual) {
+  if (!r.profile.state.is_virtual) {
     axis.state_sources = {axis.statusword};
     for (const auto& [role, object] : {std::pair("statusword", axis.statusword),
                                        std::pair("controlword", axis.controlword), std::pair("mode", axis.mode)})
@@ -88,34 +81,36 @@ void resolve_machine(Resolving& r, AxisSlot slot) {
                                         role, r.input.protocol));
     return;
   }
+  const JsonNode state = r.profile.section("state");
   model::VirtualProperties out;
-  out.enabled = condition(r, spec.enabled, slot).value();  // load_profile() has seen to it that every protocol has them
-  out.fault = condition(r, spec.fault, slot).value();
-  out.limit = condition(r, spec.limit, slot);
-  out.reached = condition(r, spec.reached, slot);
-  out.within = spec.within;
-  out.homed_at = condition(r, r.profile.homing.homed_at, slot);
-  out.gate_only = spec.gate_only;
-  out.quick_stop_energised = spec.quick_stop_energised;
+  out.enabled = r.condition(state["enabled"], slot).value();  // load_profile() saw to it that every protocol has them
+  out.fault = r.condition(state["fault"], slot).value();
+  out.limit = r.condition(state["limit"], slot);
+  out.reached = r.condition(state["reached"]["when"], slot);
+  out.within = state["reached"].whole("within", 0);
+  out.homed_at = r.condition(r.profile.section("homing")["homed_at"], slot);
+  out.gate_only = state.flag("gate_only", false);
+  out.quick_stop_energised = r.profile.state.quick_stop_energised;
   add_state_sources(out, axis);
   axis.virtual_axis = std::move(out);
 }
 
 void resolve_homing(Resolving& r, AxisSlot slot) {
-  const HomingSpec& spec = r.profile.homing;
+  const JsonNode homing = r.profile.section("homing");
   model::AxisModel& axis = r.model.axes[slot];
-  for (const auto& [method, raw] : spec.methods) axis.homing_methods.push_back(method);
-  for (const auto& [method, need] : spec.needs) {
-    model::HomingNeed out{method, {}, need.equals};
-    for (const std::string& name : need.any_of)
+  for (const auto& [method, raw] : r.profile.state.homing_methods) axis.homing_methods.push_back(method);
+  for (const JsonNode& need : homing["needs"].members()) {
+    const auto method = static_cast<std::int16_t>(whole_number(need.key()).value());
+    model::HomingNeed out{method, {}, need.whole("equals", 0)};
+    for (const std::string& name : need.names("any_of"))
       if (const model::ObjectId id = r.id(name, slot); id != model::kNoObject) out.any_of.push_back(id);
     if (!out.any_of.empty()) axis.homing_needs.push_back(std::move(out));
   }
-  if (spec.in_mode) axis.homed_mode = *spec.in_mode;
-  axis.homed = condition(r, spec.homed, slot);
-  axis.homing_failed = condition(r, spec.failed, slot);
+  if (const auto mode = homing.integer("in_mode")) axis.homed_mode = static_cast<int>(*mode);
+  axis.homed = r.condition(homing["homed"], slot);
+  axis.homing_failed = r.condition(homing["failed"], slot);
   const std::optional<std::int16_t> configured = r.input.axes[slot].homing_method;
-  if (!configured || spec.methods.contains(*configured)) return;
+  if (!configured || r.profile.state.homing_methods.contains(*configured)) return;
   const std::string known = fmt::format("{}", fmt::join(axis.homing_methods, ", "));
   r.fault(fmt::format("/axes/{}/homing_method", slot),
           fmt::format("this drive has no homing method {}: it has {}", *configured, known.empty() ? "none" : known));
@@ -148,19 +143,9 @@ void make_objects(Resolving& r, AxisSlot slot) {
 void resolve_state(Resolving& r, AxisSlot slot) {
   resolve_roles(r, slot);
   model::AxisModel& axis = r.model.axes[slot];
-  const ResolveAxis& input = r.input.axes[slot];
-  axis.number = input.number;
-  axis.name = input.name;
-  axis.inverted = input.inverted;
-  axis.standstill_velocity = input.standstill_velocity;
-  axis.units_per_rev = input.units_per_rev;
+  static_cast<model::AxisSettings&>(axis) = r.input.axes[slot];
   axis.rated_speed = rated_speed(r, slot);
-  axis.lease = input.lease;
-  axis.watch = input.watch;
-  axis.jog_timeout = input.jog_timeout;
-  axis.homing_timeout = input.homing_timeout;
-  axis.homing_method = input.homing_method;
-  axis.configured_torque_limit = input.limits.torque.has_value();
+  axis.configured_torque_limit = r.input.axes[slot].limits.torque.has_value();
   resolve_machine(r, slot);
   resolve_modes(r, slot);
   resolve_homing(r, slot);

@@ -8,7 +8,7 @@ namespace axisgate::profile {
 namespace {
 
 bool at_one_place(const model::ObjectDef& a, const model::ObjectDef& b) {
-  return !a.emulated && !b.emulated && a.address == b.address && a.size == b.size;
+  return !a.emulated && !b.emulated && a.address == b.address && a.size == b.size && a.mask() == b.mask();
 }
 
 void name_aliases(model::DriveModel& model) {

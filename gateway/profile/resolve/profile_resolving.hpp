@@ -30,11 +30,12 @@ class Resolving {
 
   // Each is absent where the protocol, or a constant nobody gave, leaves something out.
   [[nodiscard]] model::ObjectId id(std::string_view name, AxisSlot slot) const;
-  [[nodiscard]] std::optional<model::Condition> condition(const ConditionSpec& spec, AxisSlot slot) const;
-  [[nodiscard]] std::optional<std::int64_t> raw(const std::vector<ValueSpec>& values, std::string_view object,
-                                                AxisSlot slot) const;
-  [[nodiscard]] std::optional<model::ObjectWrite> write(const WriteSpec& spec, AxisSlot slot) const;
-  [[nodiscard]] std::optional<model::FactoryWrite> factory_write(const WriteSpec& spec, AxisSlot slot);
+  [[nodiscard]] std::optional<model::Condition> condition(const JsonNode& node, AxisSlot slot,
+                                                          std::string_view object = "object") const;
+  /// Of a number or an amount.
+  [[nodiscard]] std::optional<std::int64_t> raw(const WriteValue& value, std::string_view object, AxisSlot slot) const;
+  [[nodiscard]] std::optional<model::ObjectWrite> write(const JsonNode& node, AxisSlot slot) const;
+  [[nodiscard]] std::optional<model::FactoryWrite> factory_write(const JsonNode& node, AxisSlot slot);
   /// What a unit makes of a number, before the axis's own factors: known now, or once constants of the drive are.
   [[nodiscard]] std::optional<model::ScaleRecipe> recipe(const model::Unit& unit);
   /// Constants that it lacks for that.
@@ -43,6 +44,10 @@ class Resolving {
   /// The motor that an axis is, and the axis that a motor is (kNoAxis: none).
   [[nodiscard]] AxisSlot motor(AxisSlot slot) const;
   [[nodiscard]] AxisSlot axis_of(AxisSlot motor) const;
+  /// What a write gives the axis's motor.
+  [[nodiscard]] WriteValue value_of(const JsonNode& write, AxisSlot slot) const;
+  /// The constant that tells the mode of a motor; empty: none does.
+  [[nodiscard]] std::string mode_constant(AxisSlot motor) const;
   /// The mode that the maker's tool has given this axis's motor; none where the drive is simply sent one.
   [[nodiscard]] std::optional<std::int16_t> configured_mode(AxisSlot slot) const;
   /// Whether the axis can have a mode, and follow a set-point in one of its modes.
@@ -54,7 +59,8 @@ class Resolving {
 
  private:
   [[nodiscard]] std::optional<std::size_t> drive_constant(const std::string& name);
-  [[nodiscard]] std::optional<model::DriveConstant::Operand> operand(const model::Factor& factor) const;
+  [[nodiscard]] std::optional<model::DriveConstant::Operand> operand(const JsonNode& node) const;
+  [[nodiscard]] bool conditions(const JsonNode& rule, model::DriveConstant::Rule& out, bool& never) const;
 };
 
 // The parts, in their order.

@@ -64,6 +64,16 @@ TEST(Check, SaysHowFarFloatsTellUnitsApart) {
   EXPECT_THAT(check::report(loaded).text, HasSubstr("up to ±256 turns\n"));
 }
 
+TEST(Check, SaysWhereADrivesNumbersWereNeverTried) {
+  LoadedConfig loaded = one_axis();
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("never tried")));
+  loaded.models[0][0].profile = "acme-servo";
+  loaded.models[0][0].only_simulated = true;
+  EXPECT_THAT(
+      check::report(loaded).text,
+      HasSubstr("profile         acme-servo: numbers from an EDS or a public list, never tried on the real drive\n"));
+}
+
 TEST(Check, NamesWhatAnAxisDoesNotHave) {
   const std::string text = check::report(one_axis()).text;
   EXPECT_THAT(text, HasSubstr("quantities: mode_display, velocity_actual, torque_actual"));
