@@ -98,7 +98,11 @@ bool Bus::take_wire_event() {
     const ExchangeResult result = *std::exchange(heard_reply_, std::nullopt);
     if (outstanding_) {
       ++statistics_.replies;
-      end_exchange(result, settings_.min_gap);
+      const ExchangeResult useless{.code = Errc::bad_reply};
+      if (outstanding_->part.answered(result))
+        outstanding_->deadline = outstanding_->goes_on_at = now() + settings_.min_gap;
+      else
+        end_exchange(outstanding_->part.is_useless(result) ? useless : result, settings_.min_gap);
     }
     return true;
   }
@@ -120,7 +124,7 @@ bool Bus::take_wire_event() {
 /// A drive that has started anew, or is gone, will answer nothing any more: its exchange ends now, not at its timeout.
 bool Bus::take_unsolicited() {
   if (heard_unsolicited_.empty()) return false;
-  count_bits();
+  bits_.count(wire_->bits_carried(), now());
   const UnsolicitedEvent unsolicited = heard_unsolicited_.front();
   heard_unsolicited_.pop_front();
   if (!up_) return true;
@@ -131,7 +135,7 @@ bool Bus::take_unsolicited() {
   const bool ends =
       unsolicited.kind == UnsolicitedEvent::Kind::started || unsolicited.kind == UnsolicitedEvent::Kind::gone;
   if (ends && outstanding_ && drives_[outstanding_->drive] == *named) {
-    wire_->abandon();
+    if (outstanding_->goes_on_at == kNever) wire_->abandon();
     end_exchange({.code = Errc::link_lost}, settings_.min_gap);
   }
   (*named)->on_unsolicited(unsolicited);
@@ -140,6 +144,11 @@ bool Bus::take_unsolicited() {
 
 /// One callback to one drive, if there is reason for one.
 bool Bus::take_turn() {
+  if (outstanding_ && now() >= outstanding_->goes_on_at) {
+    outstanding_->goes_on_at = kNever;
+    send(outstanding_->part.on_wire());
+    return true;
+  }
   if (outstanding_ && now() >= outstanding_->deadline) {
     look_for_noise();
     ++statistics_.timeouts;
@@ -163,17 +172,23 @@ void Bus::grant(const Arbiter::Grant& grant) {
     arbiter_.decline();
     return;
   }
+  outstanding_ = {.exchange = *exchange, .drive = grant.drive, .priority = grant.priority, .sent = now()};
+  load_.set_busy(true, now());
+  send(outstanding_->part.begin(*exchange));
+}
+
+void Bus::send(const Exchange& exchange) {
   ++statistics_.requests;
-  const Instant sent = now();
-  outstanding_ = {
-      *exchange, grant.drive, grant.priority, sent, sent + settings_.timeout, wire_->statistics().bad_frames};
-  load_.set_busy(true, sent);
-  count_bits();
-  wire_->send(*exchange);
+  outstanding_->deadline = now() + settings_.timeout;
+  outstanding_->bad_frames = wire_->statistics().bad_frames;
+  bits_.count(wire_->bits_carried(), now());
+  wire_->send(exchange);
 }
 
 void Bus::end_exchange(const ExchangeResult& result, Duration silence) {
-  const Outstanding ended = *std::exchange(outstanding_, std::nullopt);
+  Outstanding ended = *std::exchange(outstanding_, std::nullopt);
+  // No more than the read before it was sent, and nothing written.
+  if (ended.part.reads()) ended.exchange = ended.part.on_wire();
   if (result.code == Errc::ok) noisy_timeouts_[ended.drive] = 0;
   const Instant over = now();
   if (result.code != Errc::link_lost) statistics_.times.add(ended.priority, over - ended.sent);
@@ -237,10 +252,6 @@ void Bus::on_unsolicited(const UnsolicitedEvent& unsolicited) {
 Statistics Bus::statistics() const { return statistics_ + arbiter_.statistics() + wire_->statistics(); }
 
 std::size_t Bus::queue_depth() const { return arbiter_.waiting(); }
-
-void Bus::count_bits() {
-  if (const auto carried = wire_->bits_carried()) bits_.count(*carried, now());
-}
 
 std::uint16_t Bus::load_permille() const {
   const auto carried = settings_.bit_rate == 0 ? std::nullopt : wire_->bits_carried();

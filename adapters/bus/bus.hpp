@@ -14,6 +14,7 @@
 #include "adapters/bus/arbiter.hpp"
 #include "adapters/bus/exchange_times.hpp"
 #include "adapters/bus/load_meter.hpp"
+#include "adapters/bus/part_write.hpp"
 #include "adapters/bus/wire.hpp"
 #include "gateway/core/log.hpp"
 
@@ -93,7 +94,9 @@ class Bus final : private WireEvents {
     DriveSlot drive = 0;
     Priority priority = Priority::poll;
     Instant sent = kLongAgo;
-    Instant deadline = kNever;
+    Instant deadline = kNever;    ///< of the answer
+    Instant goes_on_at = kNever;  ///< a part's write goes then, behind its read
+    PartWrite part{};
     std::uint32_t bad_frames = 0;  ///< of the wire, when it was sent
   };
   /// Timeouts of a drive in a row, each with a bad frame in place of its answer, after which the log says so.
@@ -107,12 +110,12 @@ class Bus final : private WireEvents {
   bool take_unsolicited();
   bool take_turn();
   void grant(const Arbiter::Grant& grant);
+  void send(const Exchange& exchange);
   void look_for_noise();
   void end_exchange(const ExchangeResult& result, Duration silence);
   void link_down(const std::string& why);
   void soon();
   void turn_at(Instant due);
-  void count_bits();
   [[nodiscard]] std::string log_source() const { return "bus " + settings_.name; }
 
   BusSettings settings_;

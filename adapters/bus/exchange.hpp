@@ -56,6 +56,9 @@ struct Exchange {
   ObjectBytes bytes{};  ///< Part::first of a write: all that is written, in the object's own order
   /// CANopen reads: the bytes of an answer that does not say how many it has; 0: `size` of them, or else four.
   std::uint8_t unsaid = 0;
+  /// Writes: of the object these bits alone become `raw`, whose lowest bit is the lowest of them; the bus reads the
+  /// others just before, in the same turn. 0: all of it is written.
+  std::uint32_t mask = 0;
   friend bool operator==(const Exchange&, const Exchange&) = default;
 };
 
@@ -113,6 +116,7 @@ struct UnsolicitedEvent {
     emergency,       ///< CiA 301 EMCY: `code`, `error_register`, `vendor`; `repeats` more like it were left out before
     duplicate_node,  ///< two devices answer to this number
     foreign_write,   ///< it acknowledges a write that nobody here waits for: another master's, or a late answer to ours
+    stranger,        ///< another node is heard, `code`, that is none of the bus's: of each drive, once
     babbling,        ///< it floods the bus: `code` is the COB-ID
   };
   Kind kind = Kind::present;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "gateway/core/clock.hpp"
 
@@ -57,8 +58,11 @@ class BitMeter {
  public:
   explicit BitMeter(std::uint32_t bit_rate) : bit_rate_(bit_rate) {}
 
-  /// So many bits since the beginning. A window ends with the first call after a second of it.
-  void count(std::uint64_t bits, Instant now) {
+  /// So many bits since the beginning; none: they are not counted. A window ends with the first call after a second of
+  /// it.
+  void count(std::optional<std::uint64_t> carried, Instant now) {
+    if (!carried) return;
+    const std::uint64_t bits = *carried;
     if (start_ == kLongAgo) return begin(bits, now);
     const auto elapsed = std::chrono::duration_cast<std::chrono::microseconds>(now - start_).count();
     if (now - start_ < LoadMeter::kWindow || bit_rate_ == 0) return;

@@ -286,6 +286,8 @@ void CanopenWire::meet_stranger(const CobId& id, Bytes bytes) {
   strangers_.set(id.node);
   log_.write(LogLevel::info, log_source_,
              fmt::format("node {} is heard on this bus, and no drive of the configuration has this number", id.node));
+  for (const Node& node : nodes_)
+    events_->on_unsolicited({.kind = bus::UnsolicitedEvent::Kind::stranger, .node = node.number, .code = id.node});
 }
 
 void CanopenWire::on_timer() {

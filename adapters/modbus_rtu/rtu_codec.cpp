@@ -22,12 +22,26 @@ constexpr std::size_t kWriteReplyFrame = 6;
 bool is_read(const bus::Exchange& exchange) { return exchange.access == bus::Access::read; }
 
 Function function_of(const bus::Exchange& exchange) {
-  if (is_read(exchange)) return Function::read_holding_registers;
+  const auto table = static_cast<ModbusTable>(exchange.object.sub);
+  if (is_read(exchange)) {
+    if (table == ModbusTable::coil) return Function::read_coils;
+    if (table == ModbusTable::discrete) return Function::read_discrete_inputs;
+    return table == ModbusTable::input ? Function::read_input_registers : Function::read_holding_registers;
+  }
+  if (table == ModbusTable::coil) return Function::write_single_coil;
   return exchange.size == 4 ? Function::write_multiple_registers : Function::write_single_register;
 }
 
+/// It reads bits, eight in a byte.
+bool reads_bits(Function function) {
+  return function == Function::read_coils || function == Function::read_discrete_inputs;
+}
+
 /// Of a write of one register: the value goes in whole, of one byte in the low half (Kinco JD, 8.2: mode 6 is 00 06).
+/// Of a coil: on or off.
 std::uint16_t register_of(const bus::Exchange& exchange) {
+  constexpr std::uint16_t kOn = 0xFF00;
+  if (function_of(exchange) == Function::write_single_coil) return exchange.raw == 0 ? std::uint16_t{0} : kOn;
   return static_cast<std::uint16_t>(exchange.raw & (exchange.size == 1 ? 0xFFU : 0xFFFFU));
 }
 
@@ -49,8 +63,8 @@ bool is_for_ever(std::uint8_t code) { return code == 1 || code == 2; }
 
 bool is_error_of(std::uint8_t function, Function asked, const RtuNode& node) {
   if (function == (static_cast<std::uint8_t>(asked) | kErrorBit)) return true;
-  return asked == Function::read_holding_registers &&
-         std::ranges::find(node.error_functions, function) != node.error_functions.end();
+  const bool reads = asked <= Function::read_input_registers;
+  return reads && std::ranges::find(node.error_functions, function) != node.error_functions.end();
 }
 
 bus::ExchangeResult refusal(std::uint8_t code) {
@@ -62,7 +76,17 @@ bool holds_registers(Bytes frame) {
   return frame.size() > kDataAt && frame.size() == kDataAt + frame[kDataSizeAt] && frame[kDataSizeAt] % 2 == 0;
 }
 
+/// One byte with one bit in it.
+Judgement judge_bit(Bytes frame, const bus::Exchange& exchange) {
+  if (frame.size() <= kDataAt || frame.size() != kDataAt + frame[kDataSizeAt]) return NotMine::malformed;
+  if (frame.size() != kDataAt + 1) return NotMine::wrong_length;
+  bus::ExchangeResult result;
+  result.fields.push_back({exchange.object, exchange.size, frame[kDataAt] & 1U});
+  return result;
+}
+
 Judgement judge_read(Bytes frame, const bus::Exchange& exchange, const RtuNode& node) {
+  if (reads_bits(function_of(exchange))) return judge_bit(frame, exchange);
   if (!holds_registers(frame)) return NotMine::malformed;
   const Bytes registers = frame.subspan(kDataAt);
   if (registers.size() != 2 * registers_asked(exchange)) return NotMine::wrong_length;
@@ -78,7 +102,8 @@ Judgement judge_read(Bytes frame, const bus::Exchange& exchange, const RtuNode& 
 
 Judgement judge_write(Bytes frame, const bus::Exchange& exchange) {
   if (frame.size() != kWriteReplyFrame) return NotMine::malformed;
-  const std::size_t echo = exchange.size == 4 ? registers_of(exchange.size) : register_of(exchange);
+  const bool several = function_of(exchange) == Function::write_multiple_registers;
+  const std::size_t echo = several ? registers_of(exchange.size) : register_of(exchange);
   const bool same = load_be16(frame, kAddressAt) == exchange.object.index && load_be16(frame, kCountAt) == echo;
   if (!same) return NotMine::wrong_echo;
   return bus::ExchangeResult{};
@@ -97,14 +122,14 @@ Frame request_of(const bus::Exchange& exchange, const RtuNode& node) {
   const Function function = function_of(exchange);
   Frame frame{exchange.node, static_cast<Byte>(function)};
   push_be16(frame, exchange.object.index);
-  if (function == Function::read_holding_registers) {
+  if (is_read(exchange)) {
     const std::size_t count = registers_asked(exchange);
     assert(count <= kMaxReadRegisters && exchange.object.index + count <= 0x10000);
     push_be16(frame, count);
     return frame;
   }
   assert(exchange.more.empty() && (exchange.size == 1 || exchange.size == 2 || exchange.size == 4));
-  if (function == Function::write_single_register) {
+  if (function != Function::write_multiple_registers) {
     push_be16(frame, register_of(exchange));
     return frame;
   }
@@ -122,6 +147,7 @@ Frame request_of(const bus::Exchange& exchange, const RtuNode& node) {
 std::size_t request_bytes(const bus::Exchange& exchange) { return request_of(exchange, RtuNode{}).size() + kCrcSize; }
 
 std::size_t reply_bytes(const bus::Exchange& exchange) {
+  if (reads_bits(function_of(exchange))) return kCrcSize + kDataAt + 1;
   return kCrcSize + (is_read(exchange) ? kDataAt + 2 * registers_asked(exchange) : kWriteReplyFrame);
 }
 
@@ -152,8 +178,13 @@ bool well_formed(Bytes frame) {
   if (frame.size() < kErrorFrame) return false;
   if ((frame[1] & kErrorBit) != 0) return frame.size() == kErrorFrame;
   switch (static_cast<Function>(frame[1])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs:
+      return frame.size() > kDataAt && frame.size() == kDataAt + frame[kDataSizeAt];
     case Function::read_holding_registers:
+    case Function::read_input_registers:
       return holds_registers(frame);
+    case Function::write_single_coil:
     case Function::write_single_register:
     case Function::write_multiple_registers:
       return frame.size() == kWriteReplyFrame;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How an exchange is said in Modbus RTU frames, and which frame answers it (Modbus application protocol V1.1b3, 6.3,
-// 6.6, 6.12 and 7). Promises that a frame is taken for the answer only if all it says fits: unit, function, length, and
-// of a write the echo of what was asked. Never looks at anything but its arguments; the CRC is the link's.
+// How an exchange is said in Modbus RTU frames, and which frame answers it (Modbus application protocol V1.1b3, 6.1
+// to 6.6, 6.12 and 7). Promises that a frame is taken for the answer only if all it says fits: unit, function, length,
+// and of a write the echo of what was asked. Never looks at anything but its arguments; the CRC is the link's.
 #pragma once
 
 #include <boost/container/static_vector.hpp>
@@ -17,7 +17,11 @@
 namespace axisgate::modbus_rtu {
 
 enum class Function : std::uint8_t {
+  read_coils = 0x01,
+  read_discrete_inputs = 0x02,
   read_holding_registers = 0x03,
+  read_input_registers = 0x04,
+  write_single_coil = 0x05,
   write_single_register = 0x06,
   write_multiple_registers = 0x10,
 };

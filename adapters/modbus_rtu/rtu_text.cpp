@@ -53,8 +53,16 @@ std::string describe_request(Bytes frame) {
   if (frame.size() < 6) return unnamed(frame);
   const std::string unit = fmt::format("unit {}: ", frame[0]);
   switch (static_cast<Function>(frame[1])) {
+    case Function::read_coils:
+      return unit + "read coil " + place(frame, 2);
+    case Function::read_discrete_inputs:
+      return unit + "read discrete input " + place(frame, 2);
     case Function::read_holding_registers:
       return unit + "read " + registers(load_be16(frame, 4)) + " at " + place(frame, 2);
+    case Function::read_input_registers:
+      return unit + "read input " + registers(load_be16(frame, 4)) + " at " + place(frame, 2);
+    case Function::write_single_coil:
+      return unit + "write coil " + place(frame, 2) + words(frame.subspan(4));
     case Function::write_single_register:
       return unit + "write " + place(frame, 2) + words(frame.subspan(4));
     case Function::write_multiple_registers:
@@ -70,8 +78,14 @@ std::string describe_reply(Bytes frame) {
     return unit + fmt::format("error 0x{:02X}: {} (0x{:02X})", frame[1], exception_name(frame[2]), frame[2]);
   }
   switch (static_cast<Function>(frame[1])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs:
+      return unit + fmt::format("bits = 0x{:02X}", frame[3]);
     case Function::read_holding_registers:
+    case Function::read_input_registers:
       return unit + registers((frame.size() - 3) / 2) + words(frame.subspan(3));
+    case Function::write_single_coil:
+      return unit + "written coil " + place(frame, 2) + words(frame.subspan(4));
     case Function::write_single_register:
       return unit + "written " + place(frame, 2) + words(frame.subspan(4));
     case Function::write_multiple_registers:

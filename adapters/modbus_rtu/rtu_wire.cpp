@@ -129,10 +129,11 @@ void RtuWire::on_frame(ExchangeNumber newest, Bytes frame) {
   take_other(frame, remark);
 }
 
-/// A read's or a longer write's is no answer; that of a write of one register is, on a line without echo.
+/// A read's or a longer write's is no answer; that of a write of one register or coil is, on a line without echo.
 bool RtuWire::take_copy(Bytes frame) {
-  const bool may_be_answer =
-      outstanding_ && !outstanding_->broadcast && frame[1] == static_cast<Byte>(Function::write_single_register);
+  const auto function = static_cast<Function>(frame[1]);
+  const bool writes_one = function == Function::write_single_register || function == Function::write_single_coil;
+  const bool may_be_answer = outstanding_ && !outstanding_->broadcast && writes_one;
   const bus::EchoWatch::Copy copy = echo_.on_copy(may_be_answer);
   if (copy == bus::EchoWatch::Copy::answer) return false;
   const bool echo = copy == bus::EchoWatch::Copy::echo;

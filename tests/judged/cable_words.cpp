@@ -105,11 +105,13 @@ void read_controlword(Deeds& deeds, std::uint32_t word) {
 }  // namespace
 
 Tongue tongue_of(Subject subject) {
+  if (is_eds(subject)) return Tongue::canopen;
   constexpr std::array<Tongue, kSubjects.size()> kTongues{
       Tongue::kinco,    Tongue::kinco,   Tongue::rtu,        Tongue::rtu,       Tongue::canopen,    Tongue::canopen,
       Tongue::canopen,  Tongue::rtu,     Tongue::keya_can,   Tongue::canopen,   Tongue::keya_rs232, Tongue::keya_rs485,
       Tongue::keya_can, Tongue::canopen, Tongue::keya_rs232, Tongue::keya_rs485};
-  return kTongues.at(static_cast<std::size_t>(subject));
+  const auto at = static_cast<std::size_t>(std::ranges::find(kSubjects, subject) - kSubjects.begin());
+  return kTongues.at(at);
 }
 
 bool is_whole(Tongue tongue, const CableFrame& frame) {

@@ -56,7 +56,11 @@ void Judge::jog(std::int64_t direction, std::int64_t value, Edge edge, bool sing
 void Judge::begin_jog(std::int64_t direction, Verdict& verdict) {
   if (!world_.accepted.contains(row::jog_velocity)) {
     verdict = {"jog at a speed that a new gateway does not know", {0}, true};
-    if (readings_.other()) world_.motor = Motor::unknown;
+    // Refused it is no press, and may be repeated at once (NEW-5).
+    if (readings_.other())
+      world_.motor = Motor::unknown;
+    else
+      me().coils.at(direction > 0 ? coil::jog_forward : coil::jog_reverse).value = 0;
     return;
   }
   if (start_refused(kRun, verdict)) return;

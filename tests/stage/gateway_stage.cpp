@@ -221,6 +221,13 @@ simulated::LeadshineDrive& GatewayStage::leadshine(std::size_t line, std::size_t
   return *found;
 }
 
+simulated::EdsDrive& GatewayStage::eds_drive(std::size_t line, std::size_t position) {
+  can_link(line).advance_drives();
+  simulated::EdsDrive* found = can_link(line).line().eds_drive(position);
+  if (found == nullptr) throw std::invalid_argument("the drive there is known otherwise than by its EDS");
+  return *found;
+}
+
 simulated::CanopenNode& GatewayStage::can_node(std::size_t line, std::size_t position) {
   can_link(line).advance_drives();
   return can_link(line).line().node(position);
@@ -230,6 +237,20 @@ simulated::Id286pro& GatewayStage::id286pro(std::size_t line, std::size_t positi
   rtu_link(line).advance_drives();
   simulated::Id286pro* found = rtu_link(line).line().id286pro(position);
   if (found == nullptr) throw std::invalid_argument("the drive there is no iD286pro");
+  return *found;
+}
+
+simulated::Em2rs& GatewayStage::em2rs(std::size_t line, std::size_t position) {
+  rtu_link(line).advance_drives();
+  simulated::Em2rs* found = rtu_link(line).line().em2rs(position);
+  if (found == nullptr) throw std::invalid_argument("the drive there is no EM2RS");
+  return *found;
+}
+
+simulated::Zlac8015d& GatewayStage::zlac8015d(std::size_t line, std::size_t position) {
+  rtu_link(line).advance_drives();
+  simulated::Zlac8015d* found = rtu_link(line).line().zlac8015d(position);
+  if (found == nullptr) throw std::invalid_argument("the drive there is no ZLAC8015D");
   return *found;
 }
 

@@ -29,7 +29,9 @@ struct RtuStageDrive {
   simulated::RtuDriveOptions options{};
   profile::ResolveAxis axis{};
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
-  std::string profile{};                        ///< a file of the source folder; empty: the shipped one of its type
+  /// A file of the source folder, or the whole path of a test's own; empty: the shipped one of its type.
+  std::string profile{};
+  std::optional<profile::ResolveAxis> axis_b{};  ///< of a ZLAC8015D: its right motor
 };
 
 /// The same on a CAN bus.
@@ -39,8 +41,9 @@ struct CanStageDrive {
   std::map<std::string, Rational> constants{};  ///< beside those every test needs (Ipeak)
   /// 1018h as the configuration would have it: vendor, product, revision, serial.
   std::array<std::optional<std::uint32_t>, 4> identity{};
-  std::optional<profile::ResolveAxis> axis_b{};  ///< of a Keya: its motor B; none: that motor is nobody's axis
-  std::string profile{};                         ///< of a CiA 402 drive; empty: its type's own
+  std::optional<profile::ResolveAxis> axis_b{};   ///< of a Keya: its motor B; none: that motor is nobody's axis
+  std::string profile{};                          ///< the same
+  std::optional<std::uint8_t> configured_node{};  ///< what the configuration has instead of its node number
 };
 
 /// A Keya on RS232 or RS485.
@@ -110,7 +113,10 @@ class GatewayStage {
   /// Brought up to now. The drive there must be of this kind, on whichever line.
   [[nodiscard]] simulated::KincoDrive& drive(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::Id286pro& id286pro(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::Em2rs& em2rs(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::Zlac8015d& zlac8015d(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::LeadshineDrive& leadshine(std::size_t line, std::size_t position = 0);
+  [[nodiscard]] simulated::EdsDrive& eds_drive(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::KeyaDrive& keya(std::size_t line, std::size_t position = 0);
   [[nodiscard]] simulated::CanopenNode& can_node(std::size_t line, std::size_t position = 0);
   [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway().image().find(number); }
@@ -158,7 +164,7 @@ class GatewayStage {
 
 /// A commissioned drive on a line of its own.
 [[nodiscard]] GatewayStage::Line line_of(simulated::KincoType type, AxisNumber axis);
-/// Commissioned drives on one Modbus RTU line, with axes from `first` on.
+/// Commissioned drives on one Modbus RTU line, with axes from `first` on; a ZLAC8015D has two.
 [[nodiscard]] GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, AxisNumber first);
 /// Keya drives on RS232 (one) or RS485, motors A and B being axes from `first` on.
 [[nodiscard]] GatewayStage::Line keya_line_of(simulated::KeyaWiring wiring, std::vector<simulated::KeyaOptions> drives,

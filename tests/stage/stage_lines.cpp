@@ -25,9 +25,13 @@ struct Entry {
 };
 
 model::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
-  const bool own = entry.profile.ends_with(".json");
-  const profile::LoadedProfile& loaded =
-      own ? profile_once(source_path(entry.profile)) : shipped_profile(entry.profile);
+  // A test's own file, outside the source folder, may be another one the next time.
+  std::optional<profile::LoadedProfile> own;
+  if (entry.profile.starts_with('/')) own = profile::load_profile(entry.profile, {source_path("schemas/drives")});
+  const bool in_source = entry.profile.ends_with(".json");
+  const profile::LoadedProfile& loaded = own         ? *own
+                                         : in_source ? profile_once(source_path(entry.profile))
+                                                     : shipped_profile(entry.profile);
   if (!loaded.faults.empty()) throw std::runtime_error(text(loaded.faults.front()));
   profile::ResolveInput input;
   input.protocol = entry.protocol;
@@ -79,6 +83,10 @@ Entry entry_of(const RtuStageDrive& staged) {
   Entry entry{"id286pro", "modbus-rtu", unit_of(staged.options), {staged.axis}, staged.constants, {}};
   const auto* kinco = std::get_if<simulated::KincoRtuDrive>(&staged.options);
   if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
+  if (const auto* em2rs = std::get_if<simulated::Em2rsOptions>(&staged.options))
+    entry.profile = em2rs->closed_loop ? "leadshine-cs2rs" : "leadshine-em2rs";
+  if (std::holds_alternative<simulated::ZlacOptions>(staged.options)) entry.profile = "zlac8015d";
+  if (staged.axis_b) entry.axes.push_back(*staged.axis_b);
   if (!staged.profile.empty()) entry.profile = staged.profile;
   return entry;
 }
@@ -94,7 +102,13 @@ Entry entry_of(const CanStageDrive& staged) {
   }
   const auto* kinco = std::get_if<simulated::KincoCanDrive>(&staged.options);
   if (kinco != nullptr) name_kinco(entry, kinco->drive.type);
+  if (const auto* eds = std::get_if<simulated::EdsDriveOptions>(&staged.options)) {
+    entry.profile = eds->type->name;
+    if (!eds->type->tells_counts)
+      entry.constants.emplace("position_units_per_rev", Rational(eds->type->encoder_counts));
+  }
   if (!staged.profile.empty()) entry.profile = staged.profile;
+  if (staged.configured_node) entry.node = *staged.configured_node;
   return entry;
 }
 
@@ -185,7 +199,9 @@ GatewayStage::Line rtu_line_of(std::vector<simulated::RtuDriveOptions> drives, A
   GatewayStage::Line line;
   line.name = "rtu" + std::to_string(first);
   for (simulated::RtuDriveOptions& options : drives) {
-    line.rtu_drives.push_back({std::move(options), axis_named(first++), {}});
+    const bool two = std::holds_alternative<simulated::ZlacOptions>(options);
+    line.rtu_drives.push_back({std::move(options), axis_named(first++), {}, {}, {}});
+    if (two) line.rtu_drives.back().axis_b = axis_named(first++);
   }
   return line;
 }

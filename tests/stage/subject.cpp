@@ -87,6 +87,12 @@ GatewayStage::Line plain_line(Subject subject, bool neighbour) {
       return on_can(drives(simulated::LeadshineOptions{}, neighbour, node));
     case Subject::id286pro:
       return on_rtu(drives(id286pro_options(), neighbour, unit));
+    case Subject::maxon_epos4:
+    case Subject::nanotec_c5e:
+    case Subject::technosoft_ipos:
+    case Subject::elmo_gold:
+    case Subject::faulhaber_mcbl:
+      return on_can(drives(simulated::EdsDriveOptions{.type = &eds_type(subject)}, neighbour, node));
     case Subject::keya_can_speed:
     case Subject::keya_can_position:
       return on_can(drives(simulated::KeyaCanDrive{keya_options(subject)}, neighbour, of_drive));
@@ -113,12 +119,20 @@ std::int64_t units(std::int64_t counts, std::int64_t per_rev) {
 
 }  // namespace
 
+const simulated::EdsDriveType& eds_type(Subject subject) {
+  constexpr std::array<std::string_view, kEdsSubjects.size()> names{"maxon-epos4", "nanotec-c5-e", "technosoft-ipos",
+                                                                    "elmo-gold", "faulhaber-mcbl"};
+  const auto at = static_cast<std::size_t>(subject) - static_cast<std::size_t>(Subject::maxon_epos4);
+  return *simulated::eds_drive_type(names.at(at));
+}
+
 std::string name(Subject subject) {
-  static const std::array<std::string, kSubjects.size()> names{
-      "KincoJdSerial",   "KincoMdSerial",       "KincoJdRtu",        "KincoMdRtu",
-      "KincoJdCan",      "KincoMdCan",          "LeadshineCan",      "Id286proRtu",
-      "KeyaCanSpeed",    "KeyaCanopenSpeed",    "KeyaRs232Speed",    "KeyaRs485Speed",
-      "KeyaCanPosition", "KeyaCanopenPosition", "KeyaRs232Position", "KeyaRs485Position"};
+  static const std::array<std::string, kSubjects.size() + kEdsSubjects.size()> names{
+      "KincoJdSerial",    "KincoMdSerial",  "KincoJdRtu",      "KincoMdRtu",          "KincoJdCan",
+      "KincoMdCan",       "LeadshineCan",   "Id286proRtu",     "MaxonEpos4",          "NanotecC5e",
+      "TechnosoftIpos",   "ElmoGold",       "FaulhaberMcbl",   "KeyaCanSpeed",        "KeyaCanopenSpeed",
+      "KeyaRs232Speed",   "KeyaRs485Speed", "KeyaCanPosition", "KeyaCanopenPosition", "KeyaRs232Position",
+      "KeyaRs485Position"};
   return names.at(static_cast<std::size_t>(subject));
 }
 
@@ -182,6 +196,13 @@ Truth truth(GatewayStage& stage, Subject subject, const MotorPlace& place) {
             simulated::rpm_of(drive.axis().actual_speed(), drive.options().encoder_counts, kMilli),
             drive.state() == Cia402State::operation_enabled, is_fault(drive.state()), has_torque(drive.state())};
   }
+  if (is_eds(subject)) {
+    const simulated::EdsDrive& drive = stage.eds_drive(0, place.drive);
+    const std::int64_t per_rev = drive.encoder_counts();
+    return {units(simulated::counts_of(drive.axis().actual()), per_rev),
+            simulated::rpm_of(drive.axis().actual_speed(), per_rev, kMilli),
+            drive.state() == Cia402State::operation_enabled, is_fault(drive.state()), has_torque(drive.state())};
+  }
   const simulated::KincoDrive& drive = stage.drive(0, place.drive);
   const std::int64_t per_rev = drive.model().encoder_counts;
   return {units(drive.position(), per_rev), simulated::rpm_of(drive.axis().actual_speed(), per_rev, kMilli),
@@ -195,7 +216,7 @@ std::uint16_t usual_cause(Subject subject) {
   constexpr std::uint16_t kInKeya = 0x0040, kInId286pro = 14, kInLeadshine = 0x3211, kInKinco = 0x0020;
   if (is_keya(subject)) return kInKeya;
   if (subject == Subject::id286pro) return kInId286pro;
-  return subject == Subject::leadshine ? kInLeadshine : kInKinco;
+  return subject == Subject::leadshine || is_eds(subject) ? kInLeadshine : kInKinco;
 }
 
 }  // namespace
@@ -205,6 +226,7 @@ void break_down(GatewayStage& stage, Subject subject, std::optional<std::uint16_
   if (is_keya(subject)) return stage.keya(0).inject_fault(KeyaMotorName::a, number);
   if (subject == Subject::id286pro) return stage.id286pro(0).inject_fault(number);
   if (subject == Subject::leadshine) return stage.leadshine(0).inject_fault(number);
+  if (is_eds(subject)) return stage.eds_drive(0).inject_fault(number);
   stage.drive(0).inject_fault(1, number);
 }
 
@@ -213,6 +235,7 @@ void end_cause(GatewayStage& stage, Subject subject, std::optional<std::uint16_t
   if (is_keya(subject)) return stage.keya(0).clear_fault_cause(KeyaMotorName::a, number);
   if (subject == Subject::id286pro) return stage.id286pro(0).clear_fault_cause();
   if (subject == Subject::leadshine) return stage.leadshine(0).clear_fault_cause();
+  if (is_eds(subject)) return stage.eds_drive(0).clear_fault_cause();
   stage.drive(0).clear_fault_cause(1, number);
 }
 
@@ -229,7 +252,8 @@ bool lack(GatewayStage& stage, Subject subject, const std::vector<ObjectPlace>& 
     registers.insert(object.index);
   }
   const bool on_can = subject == Subject::jd_can || subject == Subject::md_can || subject == Subject::leadshine ||
-                      subject == Subject::keya_canopen_speed || subject == Subject::keya_canopen_position;
+                      is_eds(subject) || subject == Subject::keya_canopen_speed ||
+                      subject == Subject::keya_canopen_position;
   if (on_can)
     stage.can_node(0).facts().lacks = keys;
   else if (is_kinco(subject))
@@ -245,6 +269,7 @@ namespace {
 
 simulated::Cia402Drive& cia402(GatewayStage& stage, Subject subject) {
   if (subject == Subject::leadshine) return stage.leadshine(0);
+  if (is_eds(subject)) return stage.eds_drive(0);
   return stage.drive(0);
 }
 

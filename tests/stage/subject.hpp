@@ -21,6 +21,11 @@ enum class Subject : std::uint8_t {
   md_can,
   leadshine,
   id286pro,
+  maxon_epos4,
+  nanotec_c5e,
+  technosoft_ipos,
+  elmo_gold,
+  faulhaber_mcbl,
   keya_can_speed,
   keya_canopen_speed,
   keya_rs232_speed,
@@ -48,6 +53,9 @@ inline constexpr std::array kSubjects{
     Subject::keya_rs232_position,
     Subject::keya_rs485_position,
 };
+/// Known by their EDS alone: in the tables that say so, since they are CiA 402 drives as others are.
+inline constexpr std::array kEdsSubjects{Subject::maxon_epos4, Subject::nanotec_c5e, Subject::technosoft_ipos,
+                                         Subject::elmo_gold, Subject::faulhaber_mcbl};
 
 [[nodiscard]] std::string name(Subject subject);
 /// For INSTANTIATE_TEST_SUITE_P.
@@ -55,16 +63,22 @@ inline constexpr auto named = [](const auto& tested) { return name(tested.param)
 void PrintTo(Subject subject, std::ostream* out);
 
 [[nodiscard]] constexpr bool is_keya(Subject s) { return s >= Subject::keya_can_speed; }
+[[nodiscard]] constexpr bool is_eds(Subject s) { return s >= Subject::maxon_epos4 && s <= Subject::faulhaber_mcbl; }
+/// Of it.
+[[nodiscard]] const simulated::EdsDriveType& eds_type(Subject subject);
 [[nodiscard]] constexpr bool is_kinco(Subject s) { return s <= Subject::md_can; }
 [[nodiscard]] constexpr bool is_md(Subject s) {
   return s == Subject::md_serial || s == Subject::md_rtu || s == Subject::md_can;
 }
 [[nodiscard]] constexpr bool has_positions(Subject s) { return !is_keya(s) || s >= Subject::keya_can_position; }
 [[nodiscard]] constexpr bool has_speeds(Subject s) { return s < Subject::keya_can_position; }
-[[nodiscard]] constexpr bool has_torque(Subject s) { return is_kinco(s) || s == Subject::leadshine; }
+[[nodiscard]] constexpr bool has_torque(Subject s) {
+  return is_kinco(s) || s == Subject::leadshine ||
+         (is_eds(s) && s != Subject::technosoft_ipos && s != Subject::faulhaber_mcbl);
+}
 [[nodiscard]] constexpr bool has_homing(Subject s) { return !is_keya(s); }
 /// The drive is a CiA 402 drive; the others' machine is the gateway's.
-[[nodiscard]] constexpr bool is_cia402(Subject s) { return is_kinco(s) || s == Subject::leadshine; }
+[[nodiscard]] constexpr bool is_cia402(Subject s) { return is_kinco(s) || s == Subject::leadshine || is_eds(s); }
 
 /// The drive stops by itself when it has heard nobody for a second: CiA 301's heartbeat, or Keya's own watchdog, which
 /// is stated for every interface but RS485.
@@ -75,7 +89,7 @@ void PrintTo(Subject subject, std::ostream* out);
     case Subject::leadshine:
       return true;
     default:
-      return is_keya(s) && s != Subject::keya_rs485_speed && s != Subject::keya_rs485_position;
+      return is_eds(s) || (is_keya(s) && s != Subject::keya_rs485_speed && s != Subject::keya_rs485_position);
   }
 }
 

@@ -18,6 +18,7 @@ simulated::CanDriveOptions options_of(Subject servo, std::uint8_t node) {
     options.node = node;
     return options;
   }
+  if (is_eds(servo)) return simulated::EdsDriveOptions{.type = &eds_type(servo), .node = node};
   if (is_keya_canopen(servo)) {
     simulated::KeyaCanopenDrive keya;
     keya.drive.node = node;

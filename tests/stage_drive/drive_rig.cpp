@@ -189,6 +189,7 @@ bool DriveRig::powered() { return truth(stage, subject_).enabled.value_or(axis()
 bool DriveRig::neighbour_powered() { return is_keya(subject_) && stage.keya(0).enabled(KeyaMotorName::b); }
 
 std::uint64_t DriveRig::stores() {
+  if (is_eds(subject_)) return stage.eds_drive(0).stores();
   return subject_ == Subject::leadshine ? stage.leadshine(0).stores() : stage.drive(0).stores();
 }
 

@@ -53,7 +53,7 @@ void OwnedRig::cut(Cut cut) {
 
 Duration OwnedRig::short_gap(Cut cut) const {
   const Subject s = rig.subject();
-  const bool watches = s == Subject::jd_can || s == Subject::md_can || s == Subject::leadshine;
+  const bool watches = s == Subject::jd_can || s == Subject::md_can || s == Subject::leadshine || is_eds(s);
   return watches && cut == Cut::silent ? 350ms : 800ms;
 }
 

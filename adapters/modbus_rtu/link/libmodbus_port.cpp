@@ -27,8 +27,18 @@ constexpr std::string_view kTakesNothing = ": it takes no bytes";
 
 /// Bytes of the answer to this request, CRC included.
 std::size_t reply_size(Bytes request) {
-  if (request.size() < 6 || request[1] != static_cast<Byte>(Function::read_holding_registers)) return kShortestReply;
-  return std::size_t{5} + 2 * std::size_t{load_be16(request, 4)};
+  if (request.size() < 6) return kShortestReply;
+  const std::size_t count = load_be16(request, 4);
+  switch (static_cast<Function>(request[1])) {
+    case Function::read_coils:
+    case Function::read_discrete_inputs:
+      return 5 + (count + 7) / 8;
+    case Function::read_holding_registers:
+    case Function::read_input_registers:
+      return 5 + 2 * count;
+    default:
+      return kShortestReply;
+  }
 }
 
 /// The clock of the patience with a half frame; the core's own is on another thread.

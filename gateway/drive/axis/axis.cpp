@@ -41,11 +41,13 @@ void name_limit(const AxisCore& core, const WriteBatch& batch, BatchResult& resu
 }  // namespace
 
 Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
-           AxisHost& host)
+           const std::vector<Axis*>& shared, AxisHost& host)
     : image_(image),
+      shared_(shared),
+      lease_(shared.empty() ? image.lease : shared.front()->lease_),
       core_{drive, drive.axes[slot], store, turn, Motion{drive.axes[slot].velocity_lag, image.record}},
       shown_(core_, image_, host),
-      guard_(image.lease, drive.axes[slot].lease, core_.jog),
+      guard_(lease_, drive.axes[slot].lease, core_.jog),
       events_(core_, image_, guard_, host),
       admission_(core_, image_, guard_, events_),
       jog_(core_, image_),
@@ -53,6 +55,8 @@ Axis::Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, co
       signs_(core_, watch_, guard_, host),
       queue_(core_, slot, host, *this) {
   core_.loss_stop_ms = model::loss_stop_ms(drive, std::nullopt);
+  for (Axis* other : shared) other->shared_.push_back(this);
+  if (!shared.empty()) core_.motion.share(shared.front()->core_.motion, slot);
 }
 
 // --- What its drive has found ----------------------------------------------------------------------------------------
@@ -160,6 +164,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
   if (code == Errc::ok) code = admit(core_, batch);
   const bool untrue = core_.alarm(AxisAlarm::units_disagree) && starts_motion(core_, batch);
   if (code == Errc::ok && untrue) code = Errc::state_unsuitable;
+  if (code == Errc::ok && !core_.model.counts_known() && starts_motion(core_, batch)) code = Errc::still_in_setup;
   const bool shown = own == nullptr || own->shown;
   Pending pending;
   pending.refusal = refusal;
@@ -174,7 +179,7 @@ std::optional<BatchResult> Axis::carry_out(const WriteBatch& asked, Errc refusal
     if (const Errc of_stop = admit(core_, batch); of_stop != Errc::ok) return refuse(asked, of_stop, shown);
   }
   // Accepted in every state: the latch is set even where nothing can be sent.
-  if (stop && !(own != nullptr && own->again)) accept_stop(batch);
+  if (stop && !(own != nullptr && own->again)) accept_stop(batch, own != nullptr && own->with_another);
   AxisRecord& record = core_.motion.record();
   pending.accepted = stop ? record.newest_stop() : record.accepted();
   if (const Errc of_link = admission_.link_admits(stop, reads_alone(batch)); of_link != Errc::ok) {
@@ -237,7 +242,7 @@ BatchResult Axis::on_ended(Pending& pending) {
   if (jog_.finished(pending, result.outcome.code))
     guard_.halt_jog("jog: another command has taken its mode and failed: halted");
   watch_.finished(batch, result.outcome.code, sequence.begun());
-  if (!queue_.pending().starts_motion()) core_.motion.unmask_target_reached();
+  if (!queue_.pending().starts_motion()) core_.motion.mask_target_reached(false);
   result.stop = sequence.began_as_stop() ? pending.accepted : 0;
   result.refused_row = refused_row(core_, batch, result.outcome.code);
   if (result.outcome.code == Errc::ok && pending.refusal != Errc::ok) {
@@ -248,6 +253,10 @@ BatchResult Axis::on_ended(Pending& pending) {
   const Errc code = result.outcome.code;
   if (code != Errc::ok) {
     forget_speeds(core_, batch);
+    // It takes back the stop of its own; another axis's is that axis's to take back.
+    const bool refused = code == Errc::state_unsuitable && batch.command == Command::enable;
+    if (refused && core_.motion.latched_by_another() && !core_.motion.record().stopped_since(sequence.asked()))
+      core_.motion.unlatch();
     // It was dropped before anything of it was begun: a scanner that goes on writing it asks for it anew.
     if (!sequence.begun()) core_.asked.withdraw(batch);
     if (resets_fault(batch)) shown_.reset_failed();
@@ -273,6 +282,7 @@ void Axis::on_time() {
 }
 
 void Axis::observe() {
+  admission_.see_owner();
   const AxisFacts facts = core_.facts();
   core_.watch_fault();
   core_.motion.observe(facts, core_.model.homing_timeout);
@@ -303,7 +313,10 @@ Instant Axis::next_deadline() const {
 }
 
 void Axis::publish() {
-  guard_.ownership().set_armed(core_.turn.link != LinkState::online || model::holds_motor(core_.facts().state));
+  guard_.ownership().set_armed(core_.turn.link != LinkState::online || core_.any_shared([](const AxisCore& axis) {
+    return model::holds_motor(axis.facts().state);
+  }));
+  if (&lease_ != &image_.lease) image_.lease = lease_;
   // By whatever way a homing was asked for: from when it is asked until it was seen to be over.
   shown_.publish(guard_.jog(), core_.motion.running() == MotionKind::homing || queue_.pending().moves_zero());
 }

@@ -20,11 +20,13 @@ namespace axisgate::drive {
 
 class Axis final : private QueueOwner {
  public:
-  /// `turn`: its drive's, kept up to date by it.
+  /// `turn`: its drive's, kept up to date by it. `shared`: the axes before it that it is enabled and stopped as one
+  /// with; they have one stop latch and one lease.
   Axis(const model::DriveModel& drive, AxisSlot slot, ObjectStore& store, const Turn& turn, AxisImage& image,
-       AxisHost& host);
+       const std::vector<Axis*>& shared, AxisHost& host);
 
   [[nodiscard]] std::optional<BatchResult> submit(const WriteBatch& batch, BatchCallback on_result);
+  [[nodiscard]] AxisCore& core() { return core_; }
   [[nodiscard]] const AxisCore& core() const { return core_; }
   [[nodiscard]] const AxisImage& image() const { return image_; }
   [[nodiscard]] const AxisAdmission& admission() const { return admission_; }
@@ -32,7 +34,6 @@ class Axis final : private QueueOwner {
   /// What of it waits for the wire or is on it.
   [[nodiscard]] BatchQueue& queue() { return queue_; }
   [[nodiscard]] const PendingBatches& pending() const { return queue_.pending(); }
-  [[nodiscard]] FaultWatch& faults() { return core_.fault; }
   [[nodiscard]] Duration cycle() const { return shown_.cycle(); }
 
   // --- What its drive has found -------------------------------------------------------------------------------------
@@ -92,7 +93,7 @@ class Axis final : private QueueOwner {
   void accept(const WriteBatch& batch);
 
   // Stops (axis_stops.cpp).
-  void accept_stop(const WriteBatch& batch);
+  void accept_stop(const WriteBatch& batch, bool with_another);
   [[nodiscard]] Guard::Seen seen() const;
   /// Sends what is due.
   void settle();
@@ -103,6 +104,8 @@ class Axis final : private QueueOwner {
   void observe_stop();
 
   AxisImage& image_;
+  std::vector<Axis*> shared_;  ///< axes that are enabled and stopped as one with it
+  Lease& lease_;
   AxisCore core_;
   AxisPublisher shown_;
   Guard guard_;

@@ -58,10 +58,19 @@ void AxisAdmission::make_owner(const WriteBatch& batch) {
   const auto before = guard_.ownership().owner();
   const Ownership::Taken taken = guard_.ownership().take(batch.life, core_.turn.now);
   if (taken == Ownership::Taken::nothing) return;
+  owner_ = batch.client;
   if (taken != Ownership::Taken::orphan && taken != Ownership::Taken::same_origin_and_role)
     core_.motion.owner_changed();
   if (guard_.jog().client() != batch.client) guard_.end_jog("another client has taken the axis");
   events_.owner(drive::text(taken, *batch.life) + named_before(before));
+}
+
+void AxisAdmission::see_owner() {
+  if (core_.model.shares.empty()) return;
+  const auto& owner = guard_.ownership().owner();
+  if (!owner || std::exchange(owner_, owner->id) == owner->id) return;
+  core_.motion.owner_changed();
+  if (guard_.jog().client() != owner->id) guard_.end_jog("another client has taken the axis");
 }
 
 // What a connection that has ended has asked for is its successor's, too.

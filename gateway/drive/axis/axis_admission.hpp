@@ -28,6 +28,8 @@ class AxisAdmission {
   /// Any write of this client makes it the owner.
   [[nodiscard]] bool waits_for(const WriteBatch& batch) const;
   void make_owner(const WriteBatch& batch);
+  /// It has become another's by what was asked of an axis that it has one owner with.
+  void see_owner();
   /// Command take_over: another owns the axis, and must be halted first.
   [[nodiscard]] bool must_halt_for(const WriteBatch& batch, const PendingBatches& pending) const;
   /// The halt of this client's take-over is under way: nobody else asks for anything. None: it has ended.
@@ -42,7 +44,10 @@ class AxisAdmission {
   /// By the link and what the drive was found to be. `stop`, `reads_alone`: of what is asked.
   [[nodiscard]] Errc link_admits(bool stop, bool reads_alone) const;
   /// What is not surely read disabled counts as enabled: the motor of a cut cable may be running.
-  [[nodiscard]] bool may_be_enabled() const { return core_.turn.link != LinkState::online || core_.facts().enabled(); }
+  [[nodiscard]] bool may_be_enabled() const {
+    return core_.turn.link != LinkState::online ||
+           core_.any_shared([](const AxisCore& axis) { return axis.facts().enabled(); });
+  }
   /// A run that is on, waits for the wire, or may go on unseen.
   [[nodiscard]] bool may_run(const PendingBatches& pending) const;
   /// The owner's zero of a target that a run follows ends it, also where the block has not changed.
@@ -63,6 +68,7 @@ class AxisAdmission {
   Guard& guard_;
   AxisEvents& events_;
   std::optional<ClientId> taken_by_{};  ///< its take-over's halt is under way
+  ClientId owner_ = 0;                  ///< as seen last; 0: nobody's
 };
 
 }  // namespace axisgate::drive

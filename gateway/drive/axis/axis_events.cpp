@@ -2,6 +2,7 @@
 #include "gateway/drive/axis/axis_events.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
@@ -24,12 +25,28 @@ bool told_by_its_server(const WriteBatch& batch, Errc code) {
   return modbus && (code == Errc::bad_value || code == Errc::not_supported || code == Errc::role_forbidden);
 }
 
+/// Those that the drive must tell for what it does not give a value for yet.
+std::string constants_awaited(const AxisCore& core) {
+  std::vector<std::string> names;
+  for (const model::Binding& binding : core.model.bindings)
+    for (const auto* needed : {&binding.recipe.mul, &binding.recipe.div})
+      for (const std::size_t at : *needed)
+        if (const std::string& name = core.drive.constants[at].name;
+            !binding.scaled && std::ranges::find(names, name) == names.end())
+          names.push_back(name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// ": alarm local_control: ...", of an enable or a start that is refused for what an alarm says, or for want of a
 /// target.
 std::string why_against(const AxisCore& core, AxisNumber axis, const WriteBatch& batch, Errc code) {
   const bool by_alarm = code == Errc::state_unsuitable || code == Errc::identity_mismatch;
   if (by_alarm && starts_motion(core, batch) && core.alarm(AxisAlarm::units_disagree))
     return ": alarm units_disagree: a fault_reset ends it, once its cause is mended";
+  if (code == Errc::still_in_setup && core.reachable() && !core.model.counts_known())
+    return ": the drive does not tell " + constants_awaited(core);
+  if (code == Errc::state_unsuitable && asks_to_enable(batch) && core.motion.latched_by_another())
+    return ": an axis that is stopped as one with it is stop-latched: enable that one";
   const auto target = target_of(batch.command);
   const bool runs = target == Quantity::target_velocity || target == Quantity::target_torque;
   if (code == Errc::state_unsuitable && runs && !core.running_target(*target) && core.motion.may_start(core.facts()))
@@ -95,11 +112,14 @@ void AxisEvents::ended(const Pending& pending, const Outcome& outcome) {
   const bool beside = pending.refusal != Errc::ok && outcome.code == pending.refusal;
   const bool stopped = outcome.code == Errc::stopped_by_other || outcome.code == Errc::dropped_by_stop;
   const std::string by = stopped && !pending.stopped_by_name.empty() ? ", " + pending.stopped_by_name : std::string();
+  const bool by_drive = outcome.code == Errc::refused_by_drive;
+  const std::string refused = by_drive ? pending.command_sequence->missed() : std::string();
   const std::string what = batch.jogs ? std::string("jog") : command_text(core_, batch, image_.jog_velocity);
   event(EventKind::command, static_cast<std::uint32_t>(batch.command),
-        fmt::format("{}: {}{}: {}{}{}{}", batch.life ? batch.life->name : "a client",
+        fmt::format("{}: {}{}: {}{}{}{}{}", batch.life ? batch.life->name : "a client",
                     beside ? "what stood beside " : "", what, outcome_text(batch, outcome),
-                    why_against(core_, image_.number, batch, outcome.code), by, left_out_text(*left_out)));
+                    refused.empty() ? refused : ": " + refused, why_against(core_, image_.number, batch, outcome.code),
+                    by, left_out_text(*left_out)));
 }
 
 void AxisEvents::not_reached(const Pending& pending) {

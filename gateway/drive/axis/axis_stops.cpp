@@ -39,7 +39,9 @@ Guard::Seen Axis::seen() const {
   seen.runs = core_.motion.running() != MotionKind::none || facts.moving || pending.starts_motion();
   seen.runs_raw = core_.motion.runs_raw();
   seen.stopping = core_.motion.stopping();
-  seen.writes = pending.writes();
+  // One owner answers for all that is shared.
+  seen.writes =
+      pending.writes() || std::ranges::any_of(shared_, [](const Axis* other) { return other->pending().writes(); });
   seen.enables = pending.enables();
   seen.stop_waits = pending.stopping();
   seen.owed_waits = pending.carries_out_stop() || pending.ends_owed_stop(guard_.owed().halts());
@@ -99,8 +101,9 @@ void Axis::withdraw(Pending& pending, Command stop, const BatchResult& answer) {
 
 // --- What is owed ----------------------------------------------------------------------------------------------------
 
-void Axis::accept_stop(const WriteBatch& batch) {
-  core_.motion.stop(stop_latches(core_, batch), core_.turn.now);
+void Axis::accept_stop(const WriteBatch& batch, bool with_another) {
+  // The latch is one, and whose stop has set it, leaves it.
+  core_.motion.stop(stop_latches(core_, batch) && !with_another, core_.turn.now);
   core_.motion.record().stopped(batch.client);
   queue_.overtake(batch);
   guard_.jog().end();
@@ -108,6 +111,15 @@ void Axis::accept_stop(const WriteBatch& batch) {
   if (!kind) return;
   watch_.stopped(batch, *kind);
   guard_.owed().accepted(*kind, core_.store.exchange());
+  if (with_another) return;
+  // One register stops them all; what each motor alone has, its set-points and what it shows, each stops by itself.
+  const std::string why =
+      fmt::format("{}, as axis {}: they are stopped as one", text(command_of(*kind)), image_.number);
+  for (Axis* other : shared_) {
+    const bool said = !other->core_.facts().enabled();
+    other->guard_.stop_with_another(command_of(*kind), batch.client, said ? std::string() : why);
+    other->settle();
+  }
 }
 
 void Axis::on_restarted() {
@@ -170,11 +182,13 @@ void Axis::on_begun(const Pending& pending, bool done) {
   const bool acts = batch.controlword || (batch.command != Command::none && !is_stop(batch.command));
   if (acts && sequence.commanded()) core_.motion.record().commanded(batch.client, pending.accepted);
   if (sequence.is_stop() || pending.stopped_by || (!done && !sequence.commanded())) return;
-  if (asks_to_enable(batch)) {
-    guard_.late_enable().wanted();
-    guard_.discharged(guard_.owed().enabled_later());
-  }
-  if (starts_motion(batch.command)) guard_.discharged(guard_.owed().started_later());
+  if (asks_to_enable(batch)) guard_.late_enable().wanted();
+  const auto discharge = [&](Guard& guard) {
+    if (asks_to_enable(batch)) guard.discharged(guard.owed().enabled_later());
+    if (starts_motion(batch.command)) guard.discharged(guard.owed().started_later());
+  };
+  discharge(guard_);
+  for (Axis* other : shared_) discharge(other->guard_);
 }
 
 }  // namespace axisgate::drive

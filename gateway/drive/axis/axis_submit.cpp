@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a client asks of an axis becomes what is carried out, or is answered at once: who asks, buttons, a lease that is
 // given back or taken over (design 3.4 Jog, 3.5).
+#include <algorithm>
 #include <utility>
 
 #include "gateway/drive/axis/axis.hpp"
@@ -29,7 +30,9 @@ std::optional<BatchResult> Axis::submit(const WriteBatch& asked, BatchCallback o
   if (!reads_alone(batch))
     guard_.ownership().wrote(batch.renews ? batch.life : nullptr, batch.beats, !asks_nothing(batch) || batch.jog_again,
                              core_.turn.now);
-  if (refusal == Errc::ok && !asks_nothing(batch) && admission_.stop_comes_first(batch)) refusal = Errc::stop_owed;
+  const auto stop_comes_first = [&](const Axis* axis) { return axis->admission_.stop_comes_first(batch); };
+  const bool owed = stop_comes_first(this) || std::ranges::any_of(shared_, stop_comes_first);
+  if (refusal == Errc::ok && !asks_nothing(batch) && owed) refusal = Errc::stop_owed;
   if (refusal == Errc::ok && queue_.closing() && !asks_nothing(batch) && !stops_at_most(batch))
     refusal = Errc::never_started;
   if (refusal != Errc::ok) {

@@ -86,18 +86,23 @@ void AxisWatch::stopped(const WriteBatch& batch, StopKind kind) {
 void AxisWatch::renumbered() {
   motion_.reset();
   units_.reset();
+  target_ = {};
+  move_ = 0;
+  signs_reported_ = 0;
 }
 
 // --- What is seen ----------------------------------------------------------------------------------------------------
 
 void AxisWatch::observe(bool asked) {
   // What a suspect drive shows counts for nothing, and it is not lost.
-  if (core_.model.position_commanded || core_.turn.link == LinkState::suspect) return;
+  if (core_.turn.link == LinkState::suspect) return;
   const AxisFacts facts = core_.facts();
+  watch_target(facts);
+  watch_signs();
+  if (core_.model.position_commanded) return;
   watch_motion(facts, asked);
   watch_torque();
   if (core_.model.watch.units) watch_units(facts, asked);
-  watch_target(facts);
 }
 
 bool AxisWatch::explained(const AxisFacts& facts, bool asked) const {
@@ -220,18 +225,78 @@ void AxisWatch::watch_units(const AxisFacts& facts, bool asked) {
            found->velocity, found->position));
 }
 
+std::optional<TargetWatch::Seen> AxisWatch::standing_move(const AxisFacts& facts) const {
+  const Motion& motion = core_.motion;
+  const auto position = value(Quantity::position_actual, core_.model.units_per_rev.to_double());
+  const bool known = position && core_.sent_to && core_.turn.link == LinkState::online && facts.enabled();
+  if (!known || facts.moving || asked_ != move_) return std::nullopt;
+  using End = TargetWatch::End;
+  const bool runs = motion.running() == MotionKind::discrete;
+  const bool shown = runs ? facts.target_reached : motion.arrived() || facts.motion_failed;
+  if (runs == shown) return std::nullopt;
+  return TargetWatch::Seen{
+      .at = core_.turn.now,
+      .move = move_,
+      .end = runs                  ? End::none
+             : facts.motion_failed ? End::failed
+                                   : End::reached,
+      .position = position->value,
+      .target = static_cast<double>(core_.sent_to->position) / core_.model.units_per_rev.to_double()};
+}
+
 void AxisWatch::watch_target(const AxisFacts& facts) {
-  const auto position = core_.value(Quantity::position_actual);
-  const bool moves = core_.motion.running() == MotionKind::discrete && !facts.target_reached && core_.sent_to;
-  const double units = core_.model.units_per_rev.to_double();
-  const auto turns = [units](std::int64_t at) { return static_cast<double>(at) / units; };
-  const bool there = moves && position && !facts.moving && core_.turn.link == LinkState::online &&
-                     std::abs(turns(*position - core_.sent_to->position)) <= core_.model.watch.travel.to_double();
-  if (!target_.observe(there, core_.turn.now)) return;
+  if (core_.motion.running() == MotionKind::discrete) move_ = asked_;
+  const auto seen = standing_move(facts);
+  const auto finding = target_.observe(seen, core_.model.watch.travel.to_double());
+  // A drive that has a limit of its own may end a move there.
+  const bool limited = (core_.value(Quantity::statusword).value_or(0) & model::statusword::kInternalLimit) != 0;
+  if (!finding || (limited && *finding == TargetWatch::Finding::elsewhere)) return;
+  std::string why;
+  switch (*finding) {
+    case TargetWatch::Finding::not_reached:
+      why = "and the drive does not say that it is there: see " + reached_by();
+      break;
+    case TargetWatch::Finding::held:
+      why = "and has not ended: something holds the motor, or position_actual does not count as target_position does";
+      break;
+    case TargetWatch::Finding::elsewhere:
+      why =
+          "and the drive says that it is there: position_actual or target_position is another object of the drive, "
+          "or they do not count alike";
+      break;
+    case TargetWatch::Finding::short_of_it:
+      why = "and has failed: something has ended it, or position_actual does not count as target_position does";
+      break;
+  }
   host_.event(core_.model.number, EventKind::warning, 0,
-              fmt::format("the move stands at {:.4f} turns, {:.4f} from its target, and the drive does not say that it "
-                          "is there: see its position window (6067h, 6068h)",
-                          turns(*position), std::abs(turns(*position - core_.sent_to->position))));
+              fmt::format("the move stands at {:.4f} turns, {:.4f} from its target, {}", seen->position,
+                          std::abs(seen->position - seen->target), why));
+}
+
+std::string AxisWatch::reached_by() const {
+  if (!core_.is_virtual()) return "its position window (6067h, 6068h)";
+  const auto& reached = core_.model.virtual_axis->reached;
+  if (!reached) return "\"moving\" under \"state\" in its profile";
+  return fmt::format("\"reached\" under \"state\" in its profile, for which {} reads {}",
+                     core_.object(reached->object).name, core_.store[reached->object].number);
+}
+
+// Below 0 such an object holds what is near its upper end.
+void AxisWatch::watch_signs() {
+  for (const Quantity quantity : {Quantity::position_actual, Quantity::velocity_actual}) {
+    const model::ObjectId id = core_.object_of(quantity);
+    if (id == model::kNoObject || !core_.store[id].known || (signs_reported_ & bit(quantity)) != 0) continue;
+    const model::ObjectDef& object = core_.object(id);
+    const std::int64_t number = core_.store[id].number;
+    const model::Binding& binding = *core_.model.binding(quantity);
+    if (object.is_signed || number <= object.range().max / 2 || !binding.scaled || binding.to_register(number))
+      continue;
+    signs_reported_ |= bit(quantity);
+    host_.event(core_.model.number, EventKind::warning, 0,
+                fmt::format("{} reads {}, more than its row can show; as a signed number it is {}: give object {} of "
+                            "the profile the type i{}",
+                            row(quantity).name, number, number - object.range().max - 1, object.name, 8 * object.size));
+  }
 }
 
 void AxisWatch::warn(AxisAlarm alarm, std::string text) {

@@ -56,6 +56,11 @@ class AxisWatch {
   void watch_torque();
   void watch_units(const AxisFacts& facts, bool asked);
   void watch_target(const AxisFacts& facts);
+  [[nodiscard]] std::optional<TargetWatch::Seen> standing_move(const AxisFacts& facts) const;
+  /// What tells that a move has reached its target, for whoever has to mend it.
+  [[nodiscard]] std::string reached_by() const;
+  /// A number that no row can show.
+  void watch_signs();
   void tell_unexpected(const std::string& what);
   [[nodiscard]] std::optional<Command> reaction();
   void warn(AxisAlarm alarm, std::string text);
@@ -70,6 +75,8 @@ class AxisWatch {
   MotionWatch motion_;
   UnitsWatch units_;
   TargetWatch target_;
+  std::uint32_t signs_reported_ = 0;  ///< bits of quantities
+  AxisRecord::Point move_ = 0;        ///< of the move that was under way last
   AxisRecord::Point asked_ = 0;       ///< of what was accepted last that explains some motion
   Instant unknown_until_ = kLongAgo;  ///< until then a start may come of which nobody knows
   struct Shown {

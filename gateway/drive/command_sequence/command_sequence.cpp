@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gateway/drive/plan/admission.hpp"
+#include "gateway/drive/plan/write_exchange.hpp"
 
 namespace axisgate::drive {
 namespace {
@@ -225,13 +226,10 @@ std::int64_t CommandSequence::number_of(const Action& action) const {
 }
 
 CommandSequence::Move CommandSequence::exchange_for(const Action& action) const {
+  const bool write = action.kind == Action::Kind::write && !writes_.verifying;
+  if (write) return {Move::Kind::exchange, write_of(core_.drive, action.object, number_of(action)), kLongAgo};
   const model::ObjectDef& object = core_.object(core_.to_read(action.object));
-  bus::Exchange exchange{core_.drive.node, bus::Access::read, object.address, object.size, 0};
-  if (action.kind == Action::Kind::write && !writes_.verifying) {
-    exchange.access = bus::Access::write;
-    exchange.raw = wire_bits(number_of(action), object.size);
-  }
-  return {Move::Kind::exchange, exchange, kLongAgo};
+  return {Move::Kind::exchange, {core_.drive.node, bus::Access::read, object.address, object.size, 0}, kLongAgo};
 }
 
 std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action& action) {
@@ -296,7 +294,9 @@ bool CommandSequence::has_lost_torque() const { return moved_by_write_ && !core_
 bool CommandSequence::passes_resync() {
   if (phase_ != Phase::stop || writes_.verifying) return false;
   if (!plan_.made || !plan_.begun) plan_phase();
-  return phase_ == Phase::stop && !plan_.at_end() && plan_.action().kind == Action::Kind::write;
+  // What stands beside a part must be known for sure before it is written back.
+  return phase_ == Phase::stop && !plan_.at_end() && plan_.action().kind == Action::Kind::write &&
+         !core_.object(plan_.action().object).is_part();
 }
 
 bool CommandSequence::repeat_stop() {

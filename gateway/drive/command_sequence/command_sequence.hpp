@@ -47,7 +47,8 @@ class CommandSequence {
   /// Where the drive has acknowledged all that was sent, the state asked for was not reached; else the outcome is
   /// unknown.
   [[nodiscard]] Outcome outcome_if_late() const;
-  /// Of an end with not_reached, for the log: the step, what was awaited, what was read.
+  /// Of an end with not_reached, for the log: the step, what was awaited, what was read. Of one with refused_by_drive:
+  /// the object, "target_position (0x607A:00)"; empty: it was the client's own.
   [[nodiscard]] std::string missed() const;
   /// What might still happen after such an end must be withdrawn by this stop; none: nothing might.
   [[nodiscard]] Command withdrawn_by() const;

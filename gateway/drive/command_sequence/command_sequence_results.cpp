@@ -13,6 +13,11 @@ namespace {
 
 constexpr std::uint32_t kNoSuchSubindex = 0x06090011;  // CiA 301 table 22; Kinco's serial too
 
+/// For whoever reads of it.
+std::string named(const AxisCore& core, model::ObjectId object) {
+  return fmt::format("{} ({})", core.object(object).name, place_of(core.drive, object));
+}
+
 bool is_not_there(std::uint32_t detail) {
   return detail == kNoSuchObject || detail == kNoSuchSubindex || detail == kModbusIllegalAddress;
 }
@@ -155,6 +160,11 @@ Outcome CommandSequence::outcome_if_late() const {
 }
 
 std::string CommandSequence::missed() const {
+  if (result_.outcome.code == Errc::refused_by_drive) {
+    if (plan_.at_end()) return {};
+    const Action& action = plan_.action();
+    return named(core_, action.kind == Action::Kind::wait ? action.until.object : action.object);
+  }
   std::string out = writes_.count == 0 ? "nothing was sent" : fmt::format("step {}", writes_.count);
   const auto hex = [&](model::ObjectId id, std::int64_t number) {
     const std::uint8_t size = core_.object(id).size;

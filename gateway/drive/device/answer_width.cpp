@@ -7,7 +7,7 @@ namespace axisgate::drive {
 
 bool moves_by(const model::DriveModel& model, model::ObjectId object) {
   const auto same = [&](model::ObjectId bound) {
-    if (bound == object) return true;
+    if (model.whole(bound) == object) return true;
     const auto& aliases = model.object(object).aliases;
     return std::ranges::find(aliases, bound) != aliases.end();
   };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gateway/drive/device/word_order.hpp"
 #include "gateway/model/cia402.hpp"
 
 namespace axisgate::drive {
@@ -75,6 +76,7 @@ std::optional<BringUp::Next> BringUp::next(const ObjectStore& store) {
 
 // It is not what its profile says: nothing of that profile is written to it.
 bool BringUp::lacks_needed(const ObjectStore& store) const {
+  if (!against_word_order(model_, store).empty()) return true;
   for (std::size_t i = 0; i < model_.objects.size(); ++i)
     if (const auto id = static_cast<model::ObjectId>(i); store[id].refused && model_.needs(id)) return true;
   return false;
@@ -82,7 +84,8 @@ bool BringUp::lacks_needed(const ObjectStore& store) const {
 
 std::vector<model::ObjectWrite> BringUp::setup_due(const ObjectStore& store) const {
   return model::setup_writes(
-      model_, [&](model::ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; });
+      model_, [&](model::ObjectId id) { return store[id].known ? std::optional(store[id].number) : std::nullopt; },
+      [&](model::ObjectId id) { return store.is_absent(id); });
 }
 
 std::optional<BringUp::Next> BringUp::next_setup(const ObjectStore& store) {

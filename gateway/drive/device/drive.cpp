@@ -9,6 +9,7 @@
 #include "gateway/drive/axis/publisher.hpp"
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/way_out.hpp"
+#include "gateway/drive/plan/write_exchange.hpp"
 
 namespace axisgate::drive {
 
@@ -16,9 +17,14 @@ Drive::Drive(model::DriveModel model, DriveSlot slot, std::vector<AxisImage*> im
              EventRing& events)
     : core_(std::move(model), slot, bus, events), timer_(runtime.make_timer([this] { on_time(); })) {
   assert(images.size() == core_.model.axes.size());
-  for (std::size_t i = 0; i < images.size(); ++i)
-    core_.axes.push_back(
-        std::make_unique<Axis>(core_.model, static_cast<AxisSlot>(i), core_.store, core_.turn, *images[i], core_));
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    std::vector<Axis*> shared;
+    for (const AxisSlot other : core_.model.axes[i].shares)
+      if (other < i) shared.push_back(core_.axes[other].get());
+    core_.axes.push_back(std::make_unique<Axis>(core_.model, static_cast<AxisSlot>(i), core_.store, core_.turn,
+                                                *images[i], shared, core_));
+    core_.turn.axes.push_back(&core_.axes.back()->core());
+  }
   begin_turn();
   core_.bus.attach(core_.slot, *this);
   after_event();
@@ -122,8 +128,7 @@ std::string_view why_held(Errc code) {
 bool Drive::may_leave(const bus::Exchange& exchange) {
   // A bring-up that would enable gets no further, and does not spin.
   constexpr Duration kHeldBackPause = std::chrono::milliseconds(500);
-  const model::ObjectId object =
-      exchange.access == bus::Access::write ? core_.model.find(exchange.object) : model::kNoObject;
+  const model::ObjectId object = written_by(core_.model, exchange);
   if (object == model::kNoObject) return true;
   const model::ObjectDef& def = core_.model.object(object);
   const std::int64_t number = def.number(exchange.raw);
@@ -138,7 +143,13 @@ bool Drive::may_leave(const bus::Exchange& exchange) {
   }
   for (auto& axis : core_.axes) {
     if (def.slot != kNoAxis && axis != core_.axes[def.slot]) continue;
-    const Errc code = held_on_way_out(axis->core(), object, number, sender);
+    Sender as_asked = sender;
+    if (axis.get() != on_wire_.axis && !axis->core().model.shares.empty()) {
+      // A stop of it has stopped the sender as well, and no word enables what has failed.
+      if (axis->core().facts().faulted()) continue;
+      if (sender.asked) as_asked.asked = axis->core().motion.record().now();
+    }
+    const Errc code = held_on_way_out(axis->core(), object, number, as_asked);
     if (code == Errc::ok) continue;
     axis->on_held_back(fmt::format("{} = {} was held back: {}", def.name, number, why_held(code)), sender.stops);
     give_back(code);
@@ -159,12 +170,11 @@ void Drive::give_back(Errc code) {
 
 void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result) {
   begin_turn();
-  const Ended ended{
-      .exchange = exchange,
-      .result = result,
-      .asked = on_wire_,
-      .trusted = core_.reads.counts(on_wire_.read),
-      .written = exchange.access == bus::Access::write ? core_.model.find(exchange.object) : model::kNoObject};
+  const Ended ended{.exchange = exchange,
+                    .result = result,
+                    .asked = on_wire_,
+                    .trusted = core_.reads.counts(on_wire_.read),
+                    .written = written_by(core_.model, exchange)};
   if (link_.judge(ended)) {
     const auto& [job, axis, priority, read, keeps_alive] = on_wire_;
     bool owned = job == 0;
@@ -213,6 +223,9 @@ void Drive::on_unsolicited(const bus::UnsolicitedEvent& unsolicited) {
       break;
     case bus::UnsolicitedEvent::Kind::gone:
       link_.on_gone();
+      break;
+    case bus::UnsolicitedEvent::Kind::stranger:
+      link_.on_stranger(static_cast<std::uint8_t>(unsolicited.code));
       break;
     case bus::UnsolicitedEvent::Kind::values:
       poll_.on_values(unsolicited.fields);

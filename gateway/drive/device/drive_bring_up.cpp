@@ -71,7 +71,8 @@ void SetupTask::on_given_up() {
   for (const auto& [object, first_report] : given_up) {
     if (first_report) tell_given_up(core_, object);
     if (core_.brought_up())
-      for (auto& axis : core_.axes) axis->on_blind(object);
+      for (const model::ObjectId id : core_.model.with_parts(object))
+        for (auto& axis : core_.axes) axis->on_blind(id);
   }
   const auto tells_state = [this](const ObjectTries::GivenUp& g) { return core_.model.needs_for_state(g.object); };
   if (core_.brought_up() && std::ranges::any_of(given_up, tells_state)) {
@@ -89,6 +90,11 @@ void SetupTask::end() {
   for (const std::string& note : bring_up.node().notes()) core_.tell_all(EventKind::warning, 0, note);
   core_.set_alarm(AxisAlarm::identity_mismatch, !mismatch.empty());
   judge_profile(core_);
+  const DriveReads::Settled settled = core_.reads.settle();
+  for (const std::string& unknown : settled.unknown) core_.tell_all(EventKind::warning, 0, unknown);
+  if (settled.scales)
+    for (auto& axis : core_.axes) axis->on_scale();
+  tell_refused(core_, refused_);
   if (!bring_up.adopted() && bring_up.is_configured()) map();
   for (const model::ObjectId id : bring_up.unheld())
     core_.event(core_.model.axes.front().number, EventKind::warning, 0,

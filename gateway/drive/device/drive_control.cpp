@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "gateway/drive/device/requests.hpp"
-#include "gateway/drive/plan/action.hpp"
+#include "gateway/drive/plan/write_exchange.hpp"
 
 namespace axisgate::drive {
 
@@ -54,8 +54,7 @@ std::optional<bus::Exchange> DriveControl::whole(const Turn& turn, const bus::Ex
 }
 
 // A repetition changes nothing, whether it arrived or not.
-void DriveControl::on_written(const ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at) {
-  const model::ObjectId id = model_.find(address);
+void DriveControl::on_written(model::ObjectId id, std::uint32_t raw, Errc code, Instant sent_at) {
   if (id == model::kNoObject) return;
   const std::int64_t number = model_.object(id).number(raw);
   const ObjectState& told = store_[id];
@@ -69,16 +68,15 @@ void DriveControl::on_written(const ObjectAddress& address, std::uint32_t raw, E
 void DriveControl::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& result,
                              std::optional<AxisSlot> repeated, Instant sent_at, bool trusted, Instant now) {
   if (repeated && exchange.access == bus::Access::read && !looked_just_now(now)) keep_alive_.failed(*repeated, now);
-  const model::ObjectId written =
-      exchange.access == bus::Access::write ? model_.find(exchange.object) : model::kNoObject;
+  const model::ObjectId written = written_by(model_, exchange);
   if (written == model::kNoObject) return;
   if (repeated && result.code != Errc::ok) keep_alive_.failed(*repeated, now);
   if (result.code == Errc::refused_by_drive) return;
   const bool frame = frame_.carries(exchange);
   if (frame)
     for (const bus::Neighbour& neighbour : exchange.more)
-      on_written(neighbour.object, neighbour.raw, result.code, sent_at);
-  if (frame || (repeated && result.code == Errc::ok)) on_written(exchange.object, exchange.raw, result.code, sent_at);
+      on_written(model_.find(neighbour.object), neighbour.raw, result.code, sent_at);
+  if (frame || (repeated && result.code == Errc::ok)) on_written(written, exchange.raw, result.code, sent_at);
   if (result.code == Errc::ok && (trusted || frame)) keep_alive_.written(written, sent_at);
 }
 
@@ -106,9 +104,7 @@ std::optional<DriveControl::Due> DriveControl::due(const Turn& turn) const {
     if (keep_alive_.due(axis) > turn.now) continue;
     const auto repeat = keep_alive_.repeat(turn.axes[slot].core, turn.axes[slot].stopping, turn.axes[slot].live);
     if (!repeat) continue;
-    const model::ObjectDef& def = model_.object(repeat->object);
-    const bus::Exchange write{model_.node, bus::Access::write, def.address, def.size,
-                              wire_bits(repeat->number, def.size)};
+    const bus::Exchange write = write_of(model_, repeat->object, repeat->number);
     if (frame_.carries(write) && !looked_just_now(turn.now))
       return Due{axis, read_of(model_, model_.axes[slot].virtual_axis->enabled.object)};
     return Due{axis, write};

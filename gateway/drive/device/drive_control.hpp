@@ -71,7 +71,7 @@ class DriveControl {
   [[nodiscard]] bool looked_just_now(Instant now) const;
   [[nodiscard]] std::vector<MotorShows> motors_show(const Turn& turn) const;
   [[nodiscard]] bool may_repeat(const Turn& turn) const;
-  void on_written(const ObjectAddress& address, std::uint32_t raw, Errc code, Instant sent_at);
+  void on_written(model::ObjectId id, std::uint32_t raw, Errc code, Instant sent_at);
 
   const model::DriveModel& model_;
   ObjectStore& store_;

@@ -13,10 +13,10 @@ namespace axisgate::drive {
 std::optional<bus::Exchange> CausesTask::next(OnWire& /*turn*/) {
   std::optional<model::ObjectId> object;
   for (auto& axis : core_.axes) {
-    const auto wanted = axis->faults().next(core_.turn.now);
+    const auto wanted = axis->core().fault.next(core_.turn.now);
     if (!wanted || (object && wanted != object)) continue;
     object = wanted;
-    axis->faults().asked(core_.turn.now);
+    axis->core().fault.asked(core_.turn.now);
   }
   if (object) return read_of(core_.model, *object);
   finish();
@@ -26,17 +26,17 @@ std::optional<bus::Exchange> CausesTask::next(OnWire& /*turn*/) {
 // Of a drive that is found faulted, as soon as it is up.
 Instant CausesTask::deadline() {
   for (auto& axis : core_.axes)
-    if (axis->faults().take_over())
+    if (axis->core().fault.take_over())
       for (const model::ObjectId word : axis->core().causes)
         if (!core_.reads.tells_state(word)) core_.reads.hurry(word, core_.turn.now);
-  const auto has_cause = [this](const auto& axis) { return axis->faults().next(core_.turn.now).has_value(); };
+  const auto has_cause = [this](const auto& axis) { return axis->core().fault.next(core_.turn.now).has_value(); };
   if (core_.brought_up() && job() == 0 && std::ranges::any_of(core_.axes, has_cause)) queue(bus::Priority::cause);
   return kNever;
 }
 
 // The code may be all that is told: what the fault words say is asked for at once.
 void CausesTask::on_emergency(const bus::UnsolicitedEvent& emergency) {
-  for (auto& axis : core_.axes) axis->faults().emergency(emergency.code, core_.turn.now, core_.store.exchange());
+  for (auto& axis : core_.axes) axis->core().fault.emergency(emergency.code, core_.turn.now, core_.store.exchange());
   std::string text = emergency.code == 0 ? std::string("EMCY 0x0000: the errors are over")
                                          : fmt::format("EMCY 0x{:04X}, error register 0x{:02X}, {}", emergency.code,
                                                        emergency.error_register, hex_text(emergency.vendor));

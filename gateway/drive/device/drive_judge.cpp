@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "gateway/drive/device/answer_width.hpp"
+#include "gateway/drive/device/word_order.hpp"
 #include "gateway/drive/plan/planner.hpp"
 
 namespace axisgate::drive {
@@ -41,7 +42,12 @@ void judge_profile(DriveCore& core) {
     if (another || ((core.store[id].refused || core.reads.tries().given_up(id)) && core.model.needs(id)))
       lacks += (lacks.empty() ? "" : ", ") + lacking(core, id);
   }
-  tell_mismatch(core, lacks);
+  if (!lacks.empty()) return tell_mismatch(core, lacks);
+  const std::string order = against_word_order(core.model, core.store);
+  tell_unfit(core, order.empty() ? order
+                                 : fmt::format("{}: nothing moves it. Turn \"word_order\" of modbus-rtu round in "
+                                               "profile {}",
+                                               order, core.model.profile));
 }
 
 void judge_given_up(DriveCore& core) {
@@ -84,15 +90,33 @@ std::string lacking(const DriveCore& core, model::ObjectId object) {
 }
 
 void tell_mismatch(DriveCore& core, const std::string& lacks) {
-  const bool news = core.bring_up.found_lacking(lacks);
-  core.set_alarm(AxisAlarm::profile_mismatch, !lacks.empty());
-  if (!news) return;
-  core.tell_all(
-      EventKind::warning, static_cast<std::uint32_t>(AxisAlarm::profile_mismatch),
-      fmt::format("profile_mismatch: the device refuses {}, which profile {} needs: nothing moves it. Put the drive "
-                  "in that the configuration names, or correct its \"profile\" or \"node\"; reads by mailbox and "
-                  "43/13 tell what it is",
-                  lacks, core.model.profile));
+  tell_unfit(core, fmt::format("the device refuses {}, which profile {} needs: nothing moves it. Put the drive in that "
+                               "the configuration names, or correct its \"profile\" or \"node\"; reads by mailbox and "
+                               "43/13 tell what it is",
+                               lacks, core.model.profile));
+}
+
+void tell_unfit(DriveCore& core, const std::string& why) {
+  const bool news = core.bring_up.found_lacking(why);
+  core.set_alarm(AxisAlarm::profile_mismatch, !why.empty());
+  if (news)
+    core.tell_all(EventKind::warning, static_cast<std::uint32_t>(AxisAlarm::profile_mismatch),
+                  "profile_mismatch: " + why);
+}
+
+void tell_refused(DriveCore& core, std::string& reported) {
+  std::string refused;
+  for (std::size_t i = 0; i < core.model.objects.size(); ++i) {
+    const auto id = static_cast<model::ObjectId>(i);
+    if (!core.store[id].refused || core.store[id].unlike || core.model.needs(id)) continue;
+    refused += fmt::format("{}{} ({}; for {})", refused.empty() ? "" : ", ", core.model.object(id).name,
+                           place_of(core.model, id), uses_of(core.model, id));
+  }
+  if (!refused.empty() && refused != reported)
+    core.tell_all(EventKind::warning, 0,
+                  fmt::format("node {} does not have what profile {} names, and goes on without: {}", core.model.node,
+                              core.model.profile, refused));
+  reported = std::move(refused);
 }
 
 }  // namespace axisgate::drive

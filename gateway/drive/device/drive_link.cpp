@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/drive/device/drive_tasks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace axisgate::drive {
 
@@ -79,11 +82,28 @@ void LinkTask::go_offline() {
   setup_.unmap();
   core_.bus.end_drive(core_.slot, Errc::offline, Errc::link_lost);
   core_.presence.look_later(core_.turn.now);
+  tell_strangers();
+}
+
+void LinkTask::on_stranger(std::uint8_t node) {
+  strangers_ += fmt::format("{}{}", strangers_.empty() ? "" : ", ", node);
+  tells_strangers_ = true;
+  if (core_.turn.link == LinkState::offline) tell_strangers();
+}
+
+// One that has answered as itself is what it is configured as.
+void LinkTask::tell_strangers() {
+  if (answered_ || !std::exchange(tells_strangers_, false)) return;
+  core_.tell_all(EventKind::warning, 0,
+                 fmt::format("offline: nobody answers as node {}, and node {} is heard on this bus, which no drive of "
+                             "the configuration has: if that is this drive, correct its \"node\"",
+                             core_.model.node, strangers_));
 }
 
 void LinkTask::on_answer(const Ended& ended) {
   // Of a read that counts lost replies out each answer may be one of them: no sign that it answers what it is asked.
   if (!ended.asked.read.counted) core_.presence.answered();
+  answered_ = true;
   if (core_.reads.answered(ended.exchange, ended.result, ended.asked.read, core_.turn.now) &&
       core_.turn.link == LinkState::suspect) {
     core_.turn.link = LinkState::online;

@@ -6,6 +6,7 @@
 
 #include "gateway/drive/device/answer_width.hpp"
 #include "gateway/drive/device/requests.hpp"
+#include "gateway/drive/device/unknown_constant.hpp"
 #include "gateway/model/scale.hpp"
 
 namespace axisgate::drive {
@@ -18,8 +19,13 @@ DriveReads::DriveReads(model::DriveModel& model, ObjectStore& store)
       blocks_(model),
       tries_(model.objects.size()),
       constants_(model.constants.size()),
-      mapped_(model.objects.size(), false) {
+      unknown_(model.constants.size()),
+      mapped_(model.objects.size(), false),
+      tells_state_(model.objects.size(), false) {
   for (const model::ObjectDef& object : model.objects) width_.push_back(object.size);
+  for (const model::AxisModel& axis : model.axes)
+    for (const model::ObjectId id : axis.state_sources)
+      if (id != model::kNoObject) tells_state_[model.whole(id)] = true;
   // What a drive sends by itself, whatever we tell it: mapped for good.
   for (const model::ObjectId id : model.unsolicited.objects) {
     mapped_[id] = true;
@@ -46,10 +52,6 @@ std::optional<bus::Exchange> DriveReads::poll(Instant now) const {
   return read_of(model_, *object);
 }
 
-bool DriveReads::tells_state(model::ObjectId object) const {
-  return std::ranges::any_of(model_.axes, [&](const auto& axis) { return drive::tells_state(axis, object); });
-}
-
 void DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const {
   if (asked.resync || asked.probe || asked.counted) return;
   blocks_.widen(exchange, [&](model::ObjectId id) {
@@ -60,7 +62,7 @@ void DriveReads::widen(bus::Exchange& exchange, Asked& asked, For whom, Instant 
 }
 
 void DriveReads::hurry_state(const model::AxisModel& axis, Instant now) {
-  for (const model::ObjectId id : axis.state_sources) plan_.hurry(id, now);
+  for (const model::ObjectId id : axis.state_sources) hurry(id, now);
 }
 
 void DriveReads::refresh(Instant now) {
@@ -262,18 +264,39 @@ void DriveReads::take_field(const bus::Exchange& exchange, const bus::ReplyField
 bool DriveReads::read_constants() {
   bool changed = false;
   for (std::size_t i = 0; i < constants_.size(); ++i) {
-    const auto value = model::value_of(model_.constants[i], [&](model::ObjectId id) {
-      return store_[id].known ? std::optional(store_[id].number) : std::nullopt;
-    });
+    const auto value = evaluated(model_.constants[i]).value;
     if (!value || constants_[i] == value) continue;
     constants_[i] = value;
     changed = true;
   }
-  if (!changed) return false;
+  if (changed) rescale();
+  return changed;
+}
+
+model::Evaluated DriveReads::evaluated(const model::DriveConstant& constant) const {
+  return model::evaluate(
+      constant, [&](model::ObjectId id) { return store_[id].known ? std::optional(store_[id].number) : std::nullopt; },
+      [&](model::ObjectId id) { return store_.is_absent(id); });
+}
+
+DriveReads::Settled DriveReads::settle() {
+  Settled out;
+  for (std::size_t i = 0; i < constants_.size(); ++i) {
+    const model::Evaluated found = evaluated(model_.constants[i]);
+    out.scales = out.scales || constants_[i] != found.value;
+    constants_[i] = found.value;
+    std::string why = unknown_text(model_, model_.constants[i], found, store_);
+    if (why != unknown_[i] && !why.empty()) out.unknown.push_back(why);
+    unknown_[i] = std::move(why);
+  }
+  if (out.scales) rescale();
+  return out;
+}
+
+void DriveReads::rescale() {
   for (model::AxisModel& axis : model_.axes)
     for (model::Binding& binding : axis.bindings)
       if (binding.recipe.waits()) model::apply_recipe(binding, constants_, model_.object(binding.object));
-  return true;
 }
 
 // --- What comes unasked ----------------------------------------------------------------------------------------------
@@ -309,8 +332,9 @@ void DriveReads::take_unsolicited(const bus::ReplyFields& fields, Instant now) {
 
 void DriveReads::watch_position(const model::AxisModel& axis, bool moves, Instant now) {
   const model::Binding* position = axis.binding(Quantity::position_actual);
-  if (position == nullptr || position->object == model::kNoObject || !mapped_[position->object]) return;
-  plan_.confirm_within(position->object, moves ? std::optional(kMovingConfirm) : std::nullopt, now);
+  const model::ObjectId id = position == nullptr ? model::kNoObject : model_.whole(position->object);
+  if (id == model::kNoObject || !mapped_[id]) return;
+  plan_.confirm_within(id, moves ? std::optional(kMovingConfirm) : std::nullopt, now);
 }
 
 }  // namespace axisgate::drive

@@ -44,18 +44,18 @@ class DriveReads {
   /// due as well, and of the state never a part without the rest.
   void widen(bus::Exchange& exchange, Asked& asked, For whom, Instant now) const;
   /// It is read as soon as its turn comes.
-  void hurry(model::ObjectId object, Instant now) { plan_.hurry(object, now); }
+  void hurry(model::ObjectId object, Instant now) { plan_.hurry(model_.whole(object), now); }
   void hurry_state(const model::AxisModel& axis, Instant now);
   /// It is read next, before all that is overdue.
-  void first(model::ObjectId object) { plan_.hurry(object, kLongAgo); }
+  void first(model::ObjectId object) { plan_.hurry(model_.whole(object), kLongAgo); }
   /// A write of it was acknowledged.
-  void written(model::ObjectId object, Instant now) { plan_.written(object, now); }
+  void written(model::ObjectId object, Instant now) { plan_.written(model_.whole(object), now); }
   /// What was invalidated since the last call is read again.
   void refresh(Instant now);
   /// Bytes of an object, as the drive answered last.
   [[nodiscard]] std::uint8_t width(model::ObjectId object) const { return width_[object]; }
   /// Some axis's statusword is made from it, or is it.
-  [[nodiscard]] bool tells_state(model::ObjectId object) const;
+  [[nodiscard]] bool tells_state(model::ObjectId object) const { return tells_state_[model_.whole(object)]; }
   /// Objects that were given up since the last call.
   [[nodiscard]] std::vector<ObjectTries::GivenUp> take_given_up() { return tries_.take_given_up(); }
   [[nodiscard]] const ObjectTries& tries() const { return tries_; }
@@ -102,6 +102,13 @@ class DriveReads {
   /// A read of several objects that was refused: true where it is tried again in smaller parts.
   [[nodiscard]] bool split(const bus::Exchange& exchange, const bus::ExchangeResult& result, const Asked& asked);
 
+  struct Settled {
+    bool scales = false;               ///< they have changed
+    std::vector<std::string> unknown;  ///< constants that the drive does not tell, to be reported: each once
+  };
+  /// All was read that bring-up reads: a constant has the value that the drive tells now, and no earlier one's.
+  [[nodiscard]] Settled settle();
+
   // --- Unsolicited values --------------------------------------------------------------------------------------------
 
   /// It comes by TPDO from now on; `event`: its timer.
@@ -129,6 +136,8 @@ class DriveReads {
   /// The drive lives, and did not answer this read.
   void was_silent(Instant now);
   [[nodiscard]] bool read_constants();
+  [[nodiscard]] model::Evaluated evaluated(const model::DriveConstant& constant) const;
+  void rescale();
 
   model::DriveModel& model_;
   ObjectStore& store_;
@@ -146,9 +155,11 @@ class DriveReads {
   bool answers_ = false;
   std::size_t probes_ = 0;  ///< of a drive that owes nothing
   std::vector<std::optional<Rational>> constants_;
+  std::vector<std::string> unknown_;  ///< why each of them is, as it was reported last
   std::vector<std::uint8_t> width_;
   bool wide_reported_ = false;  ///< since bring-up: that it answers more bytes than an object has
   std::vector<bool> mapped_;    ///< objects that come by TPDO
+  std::vector<bool> tells_state_;
   std::uint64_t invalidations_seen_ = 0;
 };
 

@@ -16,6 +16,7 @@
 #include "gateway/drive/device/drive_reads.hpp"
 #include "gateway/drive/device/node_presence.hpp"
 #include "gateway/drive/device/requests.hpp"
+#include "gateway/drive/plan/write_exchange.hpp"
 
 namespace axisgate::drive {
 
@@ -29,11 +30,9 @@ struct DriveCore final : AxisHost {
   [[nodiscard]] bool sought() const { return turn.link == LinkState::unknown || turn.link == LinkState::offline; }
   /// What `next` asks for: a read, or a write in the width that the drive answered with last.
   [[nodiscard]] bus::Exchange exchange(const auto& next) const {
-    bus::Exchange exchange = read_of(model, next.object);
-    if (!next.write) return exchange;
-    exchange.access = bus::Access::write;
-    exchange.size = reads.width(next.object);
-    exchange.raw = static_cast<std::uint32_t>(static_cast<std::uint64_t>(next.number));
+    if (!next.write) return read_of(model, next.object);
+    bus::Exchange exchange = write_of(model, next.object, next.number);
+    if (exchange.mask == 0) exchange.size = reads.width(next.object);
     return exchange;
   }
   void set_alarm(AxisAlarm alarm, bool on) {

@@ -94,6 +94,7 @@ class SetupTask final : public DriveTask {
 
   ControlTask& control_;
   const EndTask& end_;
+  std::string refused_{};  ///< what was reported of it
 };
 
 /// The turns of a drive that is not there, and of one that owes a reply.
@@ -112,14 +113,20 @@ class LinkTask final : public DriveTask {
   void on_started();
   void on_present(bus::NodeState state);
   void on_gone();
+  /// A node is heard that no drive of the configuration has.
+  void on_stranger(std::uint8_t node);
 
  private:
   [[nodiscard]] std::optional<bus::Exchange> probe(OnWire& turn);
   void on_timeout(const Ended& ended);
   void on_answer(const Ended& ended);
   void go_offline();
+  void tell_strangers();
 
   SetupTask& setup_;
+  std::string strangers_{};  ///< nodes that are heard and in no configuration
+  bool tells_strangers_ = false;
+  bool answered_ = false;  ///< once at least
 };
 
 class PollTask final : public DriveTask {
@@ -147,7 +154,11 @@ void judge_given_up(DriveCore& core);
 void tell_given_up(DriveCore& core, model::ObjectId object);
 /// Its name for tell_mismatch().
 [[nodiscard]] std::string lacking(const DriveCore& core, model::ObjectId object);
-/// What its profile needs and it does not have, reported once; empty: it has it all.
+/// What its profile needs and it does not have, reported once.
 void tell_mismatch(DriveCore& core, const std::string& lacks);
+/// Why it is none that this profile can move, reported once; empty: it is.
+void tell_unfit(DriveCore& core, const std::string& why);
+/// What it does not have and can live without, where it is other than `reported`, which was so last.
+void tell_refused(DriveCore& core, std::string& reported);
 
 }  // namespace axisgate::drive

@@ -47,14 +47,9 @@ bool ObjectTries::answered(model::ObjectId object) {
 
 std::vector<ObjectTries::GivenUp> ObjectTries::take_given_up() { return std::exchange(given_up_, {}); }
 
-std::string place_of(const model::DriveModel& model, model::ObjectId object) {
-  const ObjectAddress& at = model.object(object).address;
-  return model.protocol == "modbus-rtu" ? fmt::format("register {}", at.index)
-                                        : fmt::format("0x{:04X}:{:02X}", at.index, at.sub);
-}
+namespace {
 
-std::string uses_of(const model::DriveModel& model, model::ObjectId object) {
-  std::vector<std::string> uses;
+void add_uses(const model::DriveModel& model, model::ObjectId object, std::vector<std::string>& uses) {
   const auto has = [](const auto& list, const auto& what) { return std::ranges::find(list, what) != list.end(); };
   const auto add = [&](std::string use) {
     if (!has(uses, use)) uses.push_back(std::move(use));
@@ -73,7 +68,14 @@ std::string uses_of(const model::DriveModel& model, model::ObjectId object) {
   for (const model::ObjectWrite& setup : model.setup)
     if (setup.object == object) add("the set-up");
   if (has(model::constant_objects(model), object)) add("the axis's scales");
-  if (uses.empty()) add("its commands");
+}
+
+}  // namespace
+
+std::string uses_of(const model::DriveModel& model, model::ObjectId object) {
+  std::vector<std::string> uses;
+  for (const model::ObjectId id : model.with_parts(object)) add_uses(model, id, uses);
+  if (uses.empty()) uses.emplace_back("its commands");
   return fmt::format("{}", fmt::join(uses, ", "));
 }
 

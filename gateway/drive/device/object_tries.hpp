@@ -58,9 +58,6 @@ class ObjectTries {
   std::vector<GivenUp> given_up_;  ///< each object once
 };
 
-/// Where it is in the drive: "0x6079:00", "register 26752".
-[[nodiscard]] std::string place_of(const model::DriveModel& model, model::ObjectId object);
-
 /// What the profile has this object for, in words: "dc_voltage", "the state of axis 1".
 [[nodiscard]] std::string uses_of(const model::DriveModel& model, model::ObjectId object);
 

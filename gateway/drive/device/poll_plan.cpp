@@ -7,7 +7,9 @@
 namespace axisgate::drive {
 namespace {
 
-void add(std::vector<PollItem>& items, model::ObjectId object, model::PollClass poll_class) {
+void add(const model::DriveModel& model, std::vector<PollItem>& items, model::ObjectId object,
+         model::PollClass poll_class) {
+  object = model.whole(object);
   if (object == model::kNoObject) return;
   const auto found = std::ranges::find_if(items, [&](const PollItem& i) { return i.object == object; });
   if (found == items.end())
@@ -30,30 +32,30 @@ std::vector<PollItem> poll_items(const model::DriveModel& model) {
   std::vector<PollItem> items;
   for (const model::AxisModel& axis : model.axes) {
     const auto read = [&](model::ObjectId id, model::PollClass poll_class) {
-      if (id != model::kNoObject && !model.object(id).emulated) add(items, id, poll_class);
+      if (id != model::kNoObject && !model.object(id).emulated) add(model, items, id, poll_class);
     };
     // A PLC sees everything else through the statusword: it, or what it is made from, is never slower than fast.
     for (const model::ObjectId source : axis.state_sources) read(source, model::PollClass::fast);
     read(axis.mode_display, model::PollClass::normal);
-    for (const model::ObjectId word : axis.fault_words) add(items, word, model::PollClass::normal);
+    for (const model::ObjectId word : axis.fault_words) add(model, items, word, model::PollClass::normal);
     for (const auto* condition : {&axis.homed, &axis.homing_failed, &axis.moving})
-      if (condition->has_value()) add(items, (*condition)->object, model::PollClass::normal);
+      if (condition->has_value()) add(model, items, (*condition)->object, model::PollClass::normal);
     for (const model::Binding& binding : axis.bindings) {
       if (binding.object != model::kNoObject && model.object(binding.object).readable)
         read(binding.object, binding.poll);
-      for (const model::BitField& field : binding.bits) add(items, field.object, binding.poll);
+      for (const model::BitField& field : binding.bits) add(model, items, field.object, binding.poll);
     }
   }
   // Their zero is judged at each enable: read once, it need not be written.
   for (const model::AxisModel& axis : model.axes)
     for (const model::ObjectId id : axis.zero_before_enable)
-      if (model.object(id).readable) add(items, id, model::PollClass::once);
+      if (model.object(id).readable) add(model, items, id, model::PollClass::once);
   for (const model::AxisModel& axis : model.axes)
     for (const model::HomingNeed& need : axis.homing_needs)
-      for (const model::ObjectId id : need.any_of) add(items, id, model::PollClass::once);
-  for (const model::Check& check : model.checks) add(items, check.bad.object, model::PollClass::once);
+      for (const model::ObjectId id : need.any_of) add(model, items, id, model::PollClass::once);
+  for (const model::Check& check : model.checks) add(model, items, check.bad.object, model::PollClass::once);
   // Scales depend on them, and a panel or the mailbox may change what they follow from.
-  for (const model::ObjectId id : model::constant_objects(model)) add(items, id, model::PollClass::slow);
+  for (const model::ObjectId id : model::constant_objects(model)) add(model, items, id, model::PollClass::slow);
   std::erase_if(items, [&](const PollItem& item) {
     return !model.object(item.object).readable || comes_unsolicited(model, item.object);
   });

@@ -42,7 +42,8 @@ ReadBlocks::ReadBlocks(const model::DriveModel& model) : model_(model) {
       std::vector<model::ObjectId> neighbours;
       for (const PollItem& item : items) {
         const model::ObjectDef& object = model.object(item.object);
-        const bool inside = !object.emulated && object.address.index >= first && last_register(object) <= last;
+        const bool holding = !object.emulated && object.address.sub == 0;  // the runs are of this table
+        const bool inside = holding && object.address.index >= first && last_register(object) <= last;
         if (item.poll_class == poll_class && inside) neighbours.push_back(item.object);
       }
       pack(neighbours);
@@ -57,13 +58,14 @@ void ReadBlocks::group_answers() {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const auto has = [&](const Block& b) { return same_query(model_.object(b.objects.front()), objects[i]); };
     const bool grouped = std::ranges::any_of(blocks_, [&](const Block& b) { return b.one_answer && has(b); });
-    if (objects[i].emulated || !objects[i].readable || grouped) continue;
+    if (objects[i].emulated || objects[i].is_part() || !objects[i].readable || grouped) continue;
     Block block{{}, 0, true};
     for (std::size_t k = i; k < objects.size() && block.objects.size() < bus::kMaxReplyFields; ++k) {
       const bool there = std::ranges::any_of(block.objects, [&](model::ObjectId id) {
         return model_.object(id).address == objects[k].address;  // an alias comes with the other
       });
-      if (!objects[k].emulated && objects[k].readable && same_query(objects[i], objects[k]) && !there)
+      if (!objects[k].emulated && !objects[k].is_part() && objects[k].readable && same_query(objects[i], objects[k]) &&
+          !there)
         block.objects.push_back(static_cast<model::ObjectId>(k));
     }
     if (block.objects.size() < 2) continue;
@@ -82,6 +84,8 @@ void ReadBlocks::pack(const std::vector<model::ObjectId>& neighbours) {
   };
   for (const model::ObjectId id : sorted) {
     if (!block.objects.empty()) {
+      // An alias comes with the other.
+      if (model_.object(block.objects.back()).address == model_.object(id).address) continue;
       const int first = model_.object(block.objects.front()).address.index;
       const bool fits = last_register(model_.object(id)) - first + 1 <= model_.rtu.max_registers;
       if (!fits || block.objects.size() == bus::kMaxReplyFields) close();

@@ -7,7 +7,7 @@
 namespace axisgate::drive {
 
 bus::Exchange read_of(const model::DriveModel& model, model::ObjectId object) {
-  const model::ObjectDef& def = model.object(object);
+  const model::ObjectDef& def = model.object(model.whole(object));
   bus::Exchange exchange{model.node, bus::Access::read, def.address, def.any_width ? std::uint8_t{0} : def.size, 0};
   exchange.unsaid = def.any_width ? def.size : std::uint8_t{0};
   return exchange;
@@ -18,7 +18,7 @@ bus::Exchange read_of(const model::DriveModel& model, const model::ResyncRead& r
   if (read.registers == 0 || read.registers == registers_of(exchange)) return exchange;
   exchange.size = 2;
   for (std::uint16_t i = 1; i < read.registers; ++i)
-    exchange.more.push_back({{static_cast<std::uint16_t>(exchange.object.index + i), 0}, 2});
+    exchange.more.push_back({{static_cast<std::uint16_t>(exchange.object.index + i), exchange.object.sub}, 2});
   return exchange;
 }
 

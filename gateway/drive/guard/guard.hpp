@@ -26,6 +26,7 @@ struct OwnStop {
   bool latches = false;
   bool again = false;          ///< it was accepted before, and is owed
   bool shown = true;           ///< its result is the axis's latest
+  bool with_another = false;   ///< another axis was stopped, and this one is stopped as one with it
   ClientId client = 0;         ///< in whose name; 0: nobody's
   Instant answer_by = kNever;  ///< see WriteBatch
   EventKind kind = EventKind::warning;
@@ -91,6 +92,16 @@ class Guard {
   void homing_timed_out();
   /// What is due against what the watch has seen, or the drive's own restart.
   void asks(Command stop) { note({.command = stop}); }
+  /// An axis that is stopped as one with it was stopped, by this client.
+  void stop_with_another(Command stop, ClientId client, std::string why) {
+    note({.command = stop,
+          .shown = false,
+          .with_another = true,
+          .client = client,
+          .kind = EventKind::command,
+          .code = static_cast<std::uint32_t>(stop),
+          .why = std::move(why)});
+  }
 
   // --- What is owed -------------------------------------------------------------------------------------------------
 

@@ -38,13 +38,13 @@ void Motion::stop(bool latch, Instant now, std::optional<AxisRecord::Point> at) 
     stopping_ = true;
     settled_from_ = now + velocity_lag_;
   }
-  if (latch) latch_.set();
-  latch_.disarm();
+  if (latch) latch_->set(slot_);
+  latch_->disarm();
 }
 
-bool StopLatch::passes(model::Request402 request) const {
-  if (!latched_) return true;
-  if (request == model::Request402::enable_operation) return armed_;
+bool StopLatch::passes(model::Request402 request, AxisSlot axis) const {
+  if (!latched()) return true;
+  if (request == model::Request402::enable_operation) return armed_ && !latched_by_another(axis);
   return request != model::Request402::other;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -17,20 +18,27 @@ namespace axisgate::drive {
 enum class MotionKind : std::uint8_t { none, discrete, velocity, torque, homing };
 
 /// The stop latch: a quick stop or a lease's action sets it; an enable leaves it, or two raw words, 6 or 7 and then 15.
+/// Axes that are stopped as one have one: each that was stopped has to leave it, the others are latched with it.
 class StopLatch {
  public:
-  void set() { latched_ = true; }
-  void leave() { latched_ = armed_ = false; }
+  void set(AxisSlot axis) { by_ |= bit(axis); }
+  void leave(AxisSlot axis) {
+    by_ &= ~bit(axis);
+    armed_ = false;
+  }
   /// A 6 or 7 that went before was no step out of it.
   void disarm() { armed_ = false; }
-  [[nodiscard]] bool latched() const { return latched_; }
+  [[nodiscard]] bool latched() const { return by_ != 0; }
+  /// By the stop of another axis: this one's enable does not leave it.
+  [[nodiscard]] bool latched_by_another(AxisSlot axis) const { return (by_ & ~bit(axis)) != 0; }
   /// While latched, `controlword` passes only stops and the two steps.
-  [[nodiscard]] bool passes(model::Request402 request) const;
+  [[nodiscard]] bool passes(model::Request402 request, AxisSlot axis) const;
   /// Such a word was carried out; true: it was the second step.
   bool passed(model::Request402 request);
 
  private:
-  bool latched_ = false;
+  [[nodiscard]] static unsigned bit(AxisSlot axis) { return 1U << axis; }
+  unsigned by_ = 0;     ///< the axes that were stopped
   bool armed_ = false;  ///< the first step was taken
 };
 
@@ -41,6 +49,11 @@ class Motion {
   Motion(Duration velocity_lag, AxisRecord& record) : velocity_lag_(velocity_lag), record_(record) {}
 
   [[nodiscard]] AxisRecord& record() const { return record_; }
+  /// It is the axis at `slot` of those that have this one's latch.
+  void share(const Motion& first, AxisSlot slot) {
+    latch_ = first.latch_;
+    slot_ = slot;
+  }
 
   // --- Stops and the stop latch -------------------------------------------------------------------------------------
 
@@ -52,16 +65,18 @@ class Motion {
   /// An enable accepted after the stop has been carried out (command 1, coil 0).
   void enabled() {
     raw_run_ = false;
-    latch_.leave();
+    latch_->leave(slot_);
   }
   /// The same of an axis that was enabled all the time: nothing was sent, and a raw run goes on.
-  void unlatch() { latch_.leave(); }
-  [[nodiscard]] bool latched() const { return latch_.latched(); }
+  void unlatch() { latch_->leave(slot_); }
+  [[nodiscard]] bool latched() const { return latch_->latched(); }
+  /// By the stop of an axis that is stopped as one with it.
+  [[nodiscard]] bool latched_by_another() const { return latch_->latched_by_another(slot_); }
   /// The quick stop that latched it goes to the drive now, or the drive has restarted or is out of sight.
-  void disarm() { latch_.disarm(); }
-  [[nodiscard]] bool passes(model::Request402 request) const { return latch_.passes(request); }
+  void disarm() { latch_->disarm(); }
+  [[nodiscard]] bool passes(model::Request402 request) const { return latch_->passes(request, slot_); }
   void passed(model::Request402 request) {
-    if (latch_.passed(request)) enabled();
+    if (latch_->passed(request)) enabled();
   }
 
   // --- What runs -----------------------------------------------------------------------------------------------------
@@ -76,9 +91,8 @@ class Motion {
   [[nodiscard]] Instant rests_since() const { return rests_since_; }
   /// The motion started last was completed, and nothing has ended anything since.
   [[nodiscard]] bool arrived() const { return run_.arrived; }
-  /// A motion command was accepted: target_reached reads 0 from now until unmask().
-  void mask_target_reached() { target_reached_masked_ = true; }
-  void unmask_target_reached() { target_reached_masked_ = false; }
+  /// A motion command was accepted: target_reached reads 0 from now until it is `masked` no more.
+  void mask_target_reached(bool masked = true) { target_reached_masked_ = masked; }
   [[nodiscard]] bool target_reached_masked() const {
     return target_reached_masked_ || (run_.awaits_fall && run_.kind == MotionKind::discrete) || end_wants_position();
   }
@@ -160,7 +174,8 @@ class Motion {
 
   Duration velocity_lag_;
   AxisRecord& record_;
-  StopLatch latch_{};
+  std::shared_ptr<StopLatch> latch_ = std::make_shared<StopLatch>();
+  AxisSlot slot_ = 0;
   Run run_{};
   bool raw_run_ = false;
   bool stopping_ = false;

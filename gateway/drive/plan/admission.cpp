@@ -38,16 +38,15 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
   if (!core.drive.resync.by_length) return false;
   const auto last = [](int first, std::uint8_t size) { return first + (size > 2 ? 1 : 0); };
   const auto guarded = [&](model::ObjectId id) {
-    const auto& bindings = core.model.bindings;
     return core.object(id).mailbox_reads_only || belongs_to_a_command(core, id) ||
-           std::ranges::any_of(bindings, [&](const model::Binding& b) { return b.object == id && b.writable; });
+           std::ranges::any_of(core.model.bindings, [id](const auto& b) { return b.object == id && b.writable; });
   };
   for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
     const model::ObjectDef& object = core.drive.objects[i];
     if (object.emulated || !object.writable || !guarded(static_cast<model::ObjectId>(i))) continue;
     const int first = object.address.index;
     const bool overlaps = request.index <= last(first, object.size) && last(request.index, request.size) >= first;
-    if (overlaps && (request.index != first || request.size != object.size)) return true;
+    if (overlaps && object.address.sub == 0 && (request.index != first || request.size != object.size)) return true;
   }
   return false;
 }
@@ -265,6 +264,9 @@ Errc admit(const AxisCore& core, const WriteBatch& batch) {
     // The drive has not told yet how it counts: nobody knows whether it could take the value.
     if (!binding->scaled) return Errc::still_in_setup;
     if (!binding->to_raw(sp.value, core.object(binding->object))) return Errc::bad_value;
+    // A target may act by being written, at whatever speed and ramp the drive has.
+    const bool may_act = is_target(sp.quantity) && (sp.value != 0 || sp.quantity == Quantity::target_position);
+    if (may_act && !core.model.counts_known()) return Errc::still_in_setup;
     const auto& methods = core.model.homing_methods;
     if (sp.quantity == Quantity::homing_method && std::ranges::find(methods, sp.value) == methods.end())
       return Errc::bad_value;
@@ -389,7 +391,7 @@ bus::BusJob job_for(const AxisCore& core, const WriteBatch& batch, bool stop) {
   job.survives_stop = plain;
   for (const Setpoint& sp : batch.setpoints) {
     if (is_target(sp.quantity)) job.survives_stop = false;
-    job.writes.push_back(core.object(core.model.binding(sp.quantity)->object).address);
+    job.writes.push_back(core.object(core.model.binding(sp.quantity)->object).place());
   }
   std::ranges::sort(job.writes);
   return job;

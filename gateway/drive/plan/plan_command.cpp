@@ -142,9 +142,7 @@ Plan plan_enable(const AxisCore& core) {
   add_target_here(core, plan);
   add_quiet_setpoint(core, steps_of(core, Command::enable), plan);
   if (!add_command_steps(core, Command::enable, plan)) return plan;
-  // CiA 402-2 table 28: shutdown, switch on, enable operation.
-  constexpr std::array<std::uint16_t, 3> kSteps{0x0006, 0x0007, 0x000F};
-  for (const std::uint16_t word : kSteps) add_virtual_controlword(core, word, plan);
+  add_virtual_enable(core, plan);
   plan.add(Action::at(Mark::enabled));
   return plan;
 }
@@ -355,6 +353,7 @@ Plan plan_preparation(const AxisCore& core, Command command) {
   const bool is_motion = needs_ready(command);
   if (is_motion && !core.motion.may_start(core.facts())) return Plan::refuse(Errc::state_unsuitable);
   if (const Errc code = admissible(core, command); code != Errc::ok) return Plan::refuse(code);
+  if (const Errc code = judge_shared(core, command); code != Errc::ok) return Plan::refuse(code);
   Plan plan;
   // Torque without a speed limit runs away: what was invalidated since is read back before it counts as cached.
   const model::Binding* limit = core.model.binding(Quantity::max_velocity);

@@ -37,6 +37,16 @@ Plan plan_raw_homing(const AxisCore& core) {
 
 }  // namespace
 
+// The words of an enable and of a fault reset go through "disable": a motor that runs beside would lose its torque.
+Errc judge_shared(const AxisCore& core, Command command) {
+  if (command == Command::fault_reset) return core.another_runs() ? Errc::busy : Errc::ok;
+  if (command != Command::enable) return Errc::ok;
+  if (core.motion.latched_by_another()) return Errc::state_unsuitable;
+  for (const AxisCore* other : core.shared())
+    if (other->facts().faulted() || other->alarm(AxisAlarm::local_control)) return Errc::state_unsuitable;
+  return !core.facts().enabled() && core.another_runs() ? Errc::busy : Errc::ok;
+}
+
 // Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.
 bool word_starts(const AxisCore& core, std::uint16_t word, bool enabled) {
   const std::uint16_t before = core.controlword();

@@ -141,8 +141,9 @@ bool writes(const Plan& plan, model::ObjectId object) {
                              [&](const Action& a) { return a.kind == Action::Kind::write && a.object == object; });
 }
 
-void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
-  bool look_again = false;
+namespace {
+
+void add_own_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan, bool& look_again) {
   // Those without a quantity on this axis are nobody's to ask for: 0 in any unit. They go first: a drive may take two
   // of them for one set-point (Kinco: target torque and target current), and what was asked for must be the last word.
   const auto& bindings = core.model.bindings;
@@ -157,10 +158,9 @@ void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
     if (core.motion.record().set_aside_since(wanted.at) && core.facts().enabled()) wanted = {};
     add_running_target(core, binding->object, raw_of(core, *binding, wanted).value_or(0), plan, look_again);
   }
-  if (look_again) plan.add(Action::at(Mark::look_again));
 }
 
-void add_target_here(const AxisCore& core, Plan& plan) {
+void add_own_target_here(const AxisCore& core, Plan& plan) {
   const model::Binding* target = core.model.binding(Quantity::target_position);
   const model::Binding* actual = core.model.binding(Quantity::position_actual);
   // The target of a virtual axis starts nothing: only its command does.
@@ -170,7 +170,24 @@ void add_target_here(const AxisCore& core, Plan& plan) {
   plan.add(Action::copy(actual->object, target->object));
 }
 
-void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& plan) {
+}  // namespace
+
+// What gives one motor its torque, or lets it go on, gives it to all that are shared with it.
+void add_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan) {
+  bool look_again = false;
+  add_own_running_targets(core, keep_wanted, plan, look_again);
+  for (const AxisCore* other : core.shared()) add_own_running_targets(*other, keep_wanted, plan, look_again);
+  if (look_again) plan.add(Action::at(Mark::look_again));
+}
+
+void add_target_here(const AxisCore& core, Plan& plan) {
+  add_own_target_here(core, plan);
+  for (const AxisCore* other : core.shared()) add_own_target_here(*other, plan);
+}
+
+namespace {
+
+void add_own_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& plan) {
   const auto quantity = setpoint_of_mode(core.mode_in_force());
   const model::Binding* target = quantity ? core.model.binding(*quantity) : nullptr;
   if (target == nullptr || !target->writable || !moves_by_write(core, target->object)) return;
@@ -186,6 +203,13 @@ void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& p
   if (actual == nullptr || actual->object == model::kNoObject) return;
   plan.add(Action::read(actual->object));
   plan.add(Action::copy(actual->object, target->object));
+}
+
+}  // namespace
+
+void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& plan) {
+  add_own_quiet_setpoint(core, steps, plan);
+  for (const AxisCore* other : core.shared()) add_own_quiet_setpoint(*other, nullptr, plan);
 }
 
 // 3.4: a target_velocity acts at once while commands 8 and 9 or raw modes run, and not on a jog.
@@ -292,6 +316,7 @@ Plan plan_mode(const AxisCore& core, std::int16_t mode) {
     plan.add(Action::at(Mark::look_again));
     return plan;
   }
+  if (core.another_runs()) return Plan::refuse(Errc::busy);
   add_mode(core, mode, plan);
   return plan;
 }

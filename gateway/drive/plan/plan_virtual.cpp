@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Controlword and mode of a virtual axis: the drive has neither, so their bits become its commands (design 3.4).
 #include <algorithm>
+#include <array>
 
 #include "gateway/drive/plan/planner.hpp"
 
@@ -58,6 +59,15 @@ void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Pl
   if (core.is_virtual()) plan.add(Action::write(core.model.controlword, controlword));
 }
 
+// CiA 402-2 table 28: shutdown, switch on, enable operation.
+void add_virtual_enable(const AxisCore& core, Plan& plan) {
+  constexpr std::array<std::uint16_t, 3> kSteps{0x0006, 0x0007, 0x000F};
+  for (const std::uint16_t word : kSteps) {
+    add_virtual_controlword(core, word, plan);
+    for (const AxisCore* other : core.shared()) add_virtual_controlword(*other, word, plan);
+  }
+}
+
 Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for) {
   const auto& modes = core.model.modes;
   if (std::ranges::none_of(modes, [&](const auto& m) { return m.first == mode; })) return Plan::refuse(Errc::bad_value);
@@ -65,11 +75,13 @@ Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for) 
   if (core.mode_in_force() == mode) return plan;
   const AxisFacts facts = core.facts();
   if (core.model.mode_needs_disabled && facts.enabled()) return Plan::refuse(Errc::state_unsuitable);
+  if (core.another_runs()) return Plan::refuse(Errc::busy);
   // A command replaces what runs by itself; a mode alone would leave it running unseen.
   if (asked_for && facts.enabled() && (facts.moving || core.motion.running() != MotionKind::none) &&
       !add_command_steps(core, Command::halt, plan))
     return plan;
   plan.add(Action::write(core.model.mode, mode));
+  for (const AxisCore* other : core.shared()) plan.add(Action::write(other->model.mode, mode));
   plan.add(Action::at(Mark::mode_changed));
   return plan;
 }

@@ -36,6 +36,8 @@ void remember_setpoints(AxisCore& core, const WriteBatch& batch);
 [[nodiscard]] bool word_starts(const AxisCore& core, std::uint16_t controlword, bool enabled);
 /// What must be so before a command's own actions are planned: the halt ended, the mode it needs in force.
 [[nodiscard]] Plan plan_preparation(const AxisCore& core, Command command);
+/// What an axis that is shared with this one says of a command which acts on both.
+[[nodiscard]] Errc judge_shared(const AxisCore& core, Command command);
 /// A start that the axis's state refuses now: the set-points that came with it are not accepted either (design 3.3 What
 /// asks and what claims).
 [[nodiscard]] bool refused_by_state(const AxisCore& core, Command command);
@@ -78,6 +80,8 @@ void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan);
 [[nodiscard]] Plan plan_virtual_mode(const AxisCore& core, std::int16_t mode, bool asked_for);
 /// Appends the controlword in effect from now on; nothing where the drive has its own.
 void add_virtual_controlword(const AxisCore& core, std::uint16_t controlword, Plan& plan);
+/// The words of an enable that was carried out, also for the axes that it has enabled with this one.
+void add_virtual_enable(const AxisCore& core, Plan& plan);
 /// Where a set-point moves the axis by being written: what the set-point of the mode in force must be before torque
 /// comes on, 0 or the present position; nothing where `steps` write it themselves.
 void add_quiet_setpoint(const AxisCore& core, const model::Steps* steps, Plan& plan);

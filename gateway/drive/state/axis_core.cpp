@@ -175,6 +175,9 @@ void AxisCore::begin_mode() {
 }
 
 void AxisCore::make(model::ObjectId id, std::int64_t number) {
+  // What enables one enables all: each gate is its own axis's.
+  for (AxisCore* other : shared())
+    if (id == other->model.controlword && id != model.controlword) return other->make(id, number);
   store.make(id, number);
   if (id == model.controlword) machine.control(static_cast<std::uint16_t>(number), *model.virtual_axis);
   refresh_virtual();
@@ -199,12 +202,12 @@ void AxisCore::started(MotionKind kind, bool relative, std::optional<std::int64_
 }
 
 model::ObjectId AxisCore::to_read(model::ObjectId id) const {
-  if (id != model.statusword || !object(id).emulated) return id;
+  if (id != model.statusword || !object(id).emulated) return drive.whole(id);
   const auto older = [&](model::ObjectId a, model::ObjectId b) {
     if (store[a].refused != store[b].refused) return store[b].refused;
     return store[a].exchange < store[b].exchange;
   };
-  return *std::ranges::min_element(model.state_sources, older);
+  return drive.whole(*std::ranges::min_element(model.state_sources, older));
 }
 
 bool AxisCore::cannot_deenergise() const {

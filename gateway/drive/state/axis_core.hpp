@@ -4,6 +4,10 @@
 // Never sends and never waits.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "gateway/drive/motion/jog.hpp"
 #include "gateway/drive/motion/motion.hpp"
 #include "gateway/drive/motion/virtual_axis.hpp"
@@ -14,13 +18,19 @@
 
 namespace axisgate::drive {
 
+/// Where it is in the drive: "0x6079:00", "register 26752".
+[[nodiscard]] std::string place_of(const model::DriveModel& model, model::ObjectId object);
+
 /// The axis's statusword is made from this object, or is it.
 [[nodiscard]] bool tells_state(const model::AxisModel& model, model::ObjectId id);
+
+struct AxisCore;
 
 /// The turn of the loop in which a drive is called: all who decide see the same instant and the same link.
 struct Turn {
   Instant now = kLongAgo;
   LinkState link = LinkState::unknown;  ///< the drive's
+  std::vector<AxisCore*> axes{};        ///< the drive's, as its model has them
 };
 
 struct AxisCore {
@@ -49,6 +59,24 @@ struct AxisCore {
   std::optional<SentTo> sent_to{};
   NvmBudget nvm{};
 
+  /// Axes that are enabled and stopped as one with it.
+  [[nodiscard]] std::vector<AxisCore*> shared() const {
+    std::vector<AxisCore*> out;
+    for (const AxisSlot slot : model.shares) out.push_back(turn.axes.at(slot));
+    return out;
+  }
+  /// `holds` is true of this axis or of one that is shared with it.
+  [[nodiscard]] bool any_shared(const auto& holds) const {
+    return holds(*this) ||
+           std::ranges::any_of(model.shares, [&](AxisSlot slot) { return holds(std::as_const(*turn.axes.at(slot))); });
+  }
+  /// One that is shared with it runs or turns: what takes the torque or changes the mode of all has to wait.
+  [[nodiscard]] bool another_runs() const {
+    return std::ranges::any_of(model.shares, [this](AxisSlot slot) {
+      const AxisCore& other = *turn.axes.at(slot);
+      return other.motion.running() != MotionKind::none || other.motion.runs_raw() || other.facts().moving;
+    });
+  }
   /// link_state online or suspect.
   [[nodiscard]] bool reachable() const { return turn.link == LinkState::online || turn.link == LinkState::suspect; }
   [[nodiscard]] AxisFacts facts() const;
@@ -63,7 +91,8 @@ struct AxisCore {
   void make(model::ObjectId id, std::int64_t number);
   /// The drive has acknowledged a start. `relative`: the target is a distance. `ends_at`: see Action.
   void started(MotionKind kind, bool relative, std::optional<std::int64_t> ends_at);
-  /// What must be read to know this object: itself, or, of an `emulated` statusword, the oldest of its samples.
+  /// What must be read to know this object: itself, or the whole it is a part of, or, of an `emulated` statusword, the
+  /// oldest of its samples.
   [[nodiscard]] model::ObjectId to_read(model::ObjectId id) const;
   /// New samples, or time has passed: whether there is a fault, and what names it.
   void watch_fault();

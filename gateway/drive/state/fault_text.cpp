@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "gateway/drive/state/axis_core.hpp"
 
@@ -35,6 +37,13 @@ void add_words(const AxisCore& core, const model::AxisModel& axis, bool own, std
 }
 
 }  // namespace
+
+std::string place_of(const model::DriveModel& model, model::ObjectId object) {
+  const ObjectAddress& at = model.object(object).address;
+  if (model.protocol != "modbus-rtu") return fmt::format("0x{:04X}:{:02X}", at.index, at.sub);
+  constexpr std::array<std::string_view, 4> kTables{"register", "input register", "coil", "discrete input"};
+  return fmt::format("{} {}", kTables.at(at.sub), at.index);
+}
 
 // A remedy may send its reader to another word of the drive: all of them stand behind it, of other motors what is not
 // 0.

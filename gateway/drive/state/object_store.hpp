@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is known of each object of one drive: the number last read or acknowledged, and when its request was sent.
 // Promises that a number counts as cached only while nothing has happened that could have changed it unseen
-// (design 3.3), and that objects at one place of the drive hold one number. Never holds a value of a suspect drive: the
-// drive does not put one in.
+// (design 3.3), that objects at one place of the drive hold one number, and that a part holds what its whole does.
+// Never holds a value of a suspect drive: the drive does not put one in.
 #pragma once
 
 #include <algorithm>
@@ -31,15 +31,25 @@ struct ObjectState {
 
 class ObjectStore {
  public:
-  explicit ObjectStore(std::size_t objects) : states_(objects), periods_(objects), aliases_(objects) {}
-  /// Objects that are aliases of one another share what becomes of any of them.
+  explicit ObjectStore(std::size_t objects)
+      : states_(objects), periods_(objects), aliases_(objects), parts_(objects), wholes_(objects, model::kNoObject) {}
+  /// Objects that are aliases of one another share what becomes of any of them, and parts what becomes of their whole.
   explicit ObjectStore(const std::vector<model::ObjectDef>& objects) : ObjectStore(objects.size()) {
-    for (std::size_t i = 0; i < objects.size(); ++i) aliases_[i] = objects[i].aliases;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      aliases_[i] = objects[i].aliases;
+      wholes_[i] = objects[i].part.whole;
+      if (objects[i].is_part()) parts_[wholes_[i]].push_back({static_cast<model::ObjectId>(i), objects[i]});
+    }
   }
 
   [[nodiscard]] const ObjectState& operator[](model::ObjectId id) const {
     assert(id < states_.size());
     return states_[id];
+  }
+  /// The drive does not have it: it is neither silent about it, nor does it have it in another width.
+  [[nodiscard]] bool is_absent(model::ObjectId id) const {
+    const ObjectState& s = (*this)[id];
+    return s.refused && !s.unresponsive && !s.unlike;
   }
   /// The drive's next exchange goes on the wire; what is read or acknowledged from now on comes from it. `changes`: it
   /// is no mere read.
@@ -66,12 +76,13 @@ class ObjectStore {
            .sent_at = sent_at,
            .exchange = exchange_};
     });
+    for (const Part& part : parts_[id]) read(part.id, part.number_in(number), sent_at);
   }
   /// It came by itself. The first one after the last sending may have been on its way before: it tells nothing of it.
   void received(model::ObjectId id, std::int64_t number, Instant at) {
     const bool first = (*this)[id].exchange < last_change_;
     read(id, number, at);
-    if (first) each(id, [this](ObjectState& s) { s.exchange = last_change_; });
+    if (first) whole(id, [this](ObjectState& s) { s.exchange = last_change_; });
   }
   void acknowledged(model::ObjectId id, std::int64_t number, Instant sent_at) {
     each(id, [&](ObjectState& s) {
@@ -82,6 +93,8 @@ class ObjectStore {
            .sent_at = sent_at,
            .exchange = exchange_};
     });
+    for (const Part& part : parts_[id]) acknowledged(part.id, part.number_in(number), sent_at);
+    outlive(id);
   }
   /// Of a frame that carries the whole desired state: it was sent and may not have arrived, and what it asked for is
   /// what the next one asks for.
@@ -96,15 +109,16 @@ class ObjectStore {
     at(id) = {
         .number = number, .known = true, .cached = cached, .emulated = true, .sent_at = sent_at, .exchange = exchange};
   }
-  void refused(model::ObjectId id) { at(id) = {.refused = true}; }
-  void unresponsive(model::ObjectId id) { at(id) = {.refused = true, .unresponsive = true}; }
-  void unlike(model::ObjectId id) { at(id) = {.refused = true, .unlike = true}; }
+  void refused(model::ObjectId id) { replace(id, {.refused = true}); }
+  void unresponsive(model::ObjectId id) { replace(id, {.refused = true, .unresponsive = true}); }
+  void unlike(model::ObjectId id) { replace(id, {.refused = true, .unlike = true}); }
   /// A write of it may or may not have happened.
   void invalidate(model::ObjectId id) {
-    each(id, [](ObjectState& s) {
+    whole(id, [](ObjectState& s) {
       s.cached = s.unverified = false;
       s.unsure = true;
     });
+    outlive(id);
   }
   /// Nothing is taken as cached any more, but what `except` holds: timeout, mailbox write, mode change, fault reset,
   /// set_position (design 3.3).
@@ -122,11 +136,14 @@ class ObjectStore {
   [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
   /// What it was last may be true, but nothing confirms it any more: good only when it is read again.
   void outdate(model::ObjectId id) {
-    each(id, [](ObjectState& s) { s.sent_at = kLongAgo; });
+    whole(id, [](ObjectState& s) { s.sent_at = kLongAgo; });
   }
-  void forget(model::ObjectId id) { at(id) = {}; }
+  void forget(model::ObjectId id) { replace(id, {}); }
   /// How often the object is confirmed, where that is not its poll class's period; 0: it is.
-  void set_period(model::ObjectId id, Duration period) { periods_[id] = period; }
+  void set_period(model::ObjectId id, Duration period) {
+    periods_[id] = period;
+    for (const Part& part : parts_[id]) periods_[part.id] = period;
+  }
   [[nodiscard]] Duration period(model::ObjectId id) const { return periods_[id]; }
   /// Bring-up begins: nothing is known but what is the gateway's own.
   void forget_all() {
@@ -139,10 +156,31 @@ class ObjectStore {
     assert(id < states_.size());
     return states_[id];
   }
+  struct Part {
+    model::ObjectId id = model::kNoObject;
+    model::ObjectDef def;
+    [[nodiscard]] std::int64_t number_in(std::int64_t whole) const {
+      return def.number(static_cast<std::uint32_t>(whole) >> def.part.from);
+    }
+  };
   template <typename Change>
   void each(model::ObjectId id, Change change) {
     change(at(id));
     for (const model::ObjectId alias : aliases_[id]) change(at(alias));
+  }
+  /// With its parts.
+  template <typename Change>
+  void whole(model::ObjectId id, Change change) {
+    each(id, change);
+    for (const Part& part : parts_[id]) each(part.id, change);
+  }
+  void replace(model::ObjectId id, const ObjectState& state) {
+    at(id) = state;
+    for (const Part& part : parts_[id]) at(part.id) = state;
+  }
+  /// A part was written: what its whole was read as is no more.
+  void outlive(model::ObjectId id) {
+    if (wholes_[id] != model::kNoObject) at(wholes_[id]).cached = false;
   }
   [[nodiscard]] bool same_place(std::size_t id, model::ObjectId other) const {
     if (other == model::kNoObject) return false;
@@ -152,6 +190,8 @@ class ObjectStore {
   std::vector<ObjectState> states_;
   std::vector<Duration> periods_;
   std::vector<std::vector<model::ObjectId>> aliases_;
+  std::vector<std::vector<Part>> parts_;  ///< of each whole
+  std::vector<model::ObjectId> wholes_;   ///< of each part
   std::uint64_t exchange_ = 0;
   std::uint64_t last_change_ = 0;  ///< the newest exchange that was no mere read
   std::uint64_t invalidations_ = 0;

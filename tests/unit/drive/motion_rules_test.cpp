@@ -294,7 +294,7 @@ TEST(MotionRules, AStopOfWhatStandsLeavesItStanding) {
   s.motion.mask_target_reached();
   s.motion.stop(false, s.facts.at);
   EXPECT_EQ(s.motion.axis_state(s.facts), AxisState::stopping) << "a start may have reached the drive";
-  s.motion.unmask_target_reached();
+  s.motion.mask_target_reached(false);
   s.see(300ms);
   s.facts.follows = true;
   s.see();

@@ -141,17 +141,42 @@ TEST(UnitsWatch, SaysNothingOfAPositionThatIsSet) {
   EXPECT_EQ(scene.times, 0);
 }
 
+using End = TargetWatch::End;
+using Finding = TargetWatch::Finding;
+constexpr double kTravel = 0.1;
+
+TargetWatch::Seen standing(Duration after, double position, End end = End::none, std::uint64_t move = 1) {
+  return {.at = kBegin + after, .move = move, .end = end, .position = position, .target = 2};
+}
+
 TEST(TargetWatch, TellsOfAMoveThatStandsAtItsTargetUnreachedOnce) {
   TargetWatch watch;
-  EXPECT_FALSE(watch.observe(true, kBegin));
-  EXPECT_FALSE(watch.observe(true, kBegin + 4900ms));
-  EXPECT_FALSE(watch.observe(false, kBegin + 4950ms));
-  EXPECT_FALSE(watch.observe(true, kBegin + 5s));
-  EXPECT_TRUE(watch.observe(true, kBegin + 10s));
-  EXPECT_FALSE(watch.observe(true, kBegin + 20s)) << "once";
-  EXPECT_FALSE(watch.observe(false, kBegin + 21s));
-  EXPECT_FALSE(watch.observe(true, kBegin + 22s));
-  EXPECT_TRUE(watch.observe(true, kBegin + 27s));
+  EXPECT_FALSE(watch.observe(standing(0s, 2), kTravel));
+  EXPECT_FALSE(watch.observe(standing(4900ms, 2), kTravel));
+  EXPECT_FALSE(watch.observe({}, kTravel)) << "it turns";
+  EXPECT_FALSE(watch.observe(standing(5s, 2), kTravel));
+  EXPECT_EQ(watch.observe(standing(10s, 2), kTravel), Finding::not_reached);
+  EXPECT_FALSE(watch.observe(standing(20s, 2), kTravel)) << "once";
+  EXPECT_FALSE(watch.observe(standing(22s, 2, End::none, 2), kTravel));
+  EXPECT_EQ(watch.observe(standing(27s, 2, End::none, 2), kTravel), Finding::not_reached) << "another move";
+}
+
+TEST(TargetWatch, TellsOfAMoveThatIsHeldElsewhereAndOfNoneThatCreeps) {
+  TargetWatch watch;
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(watch.observe(standing(i * 1s, 1 + i * 0.01), kTravel)) << i;
+  EXPECT_FALSE(watch.observe(standing(23s, 1.19), kTravel));
+  EXPECT_EQ(watch.observe(standing(25s, 1.19), kTravel), Finding::held);
+}
+
+TEST(TargetWatch, LooksWhereAMoveThatHasEndedStandsOnceItHasSettled) {
+  TargetWatch watch;
+  EXPECT_FALSE(watch.observe(standing(0s, 1.5, End::reached), kTravel));
+  EXPECT_FALSE(watch.observe(standing(900ms, 1.96, End::reached), kTravel)) << "it settles";
+  EXPECT_FALSE(watch.observe(standing(3s, 1.96, End::reached), kTravel)) << "near enough";
+  EXPECT_FALSE(watch.observe(standing(4s, 0, End::reached, 2), kTravel));
+  EXPECT_EQ(watch.observe(standing(5s, 0, End::reached, 2), kTravel), Finding::elsewhere);
+  EXPECT_FALSE(watch.observe(standing(6s, 1.99, End::failed, 3), kTravel));
+  EXPECT_EQ(watch.observe(standing(7s, 1.99, End::failed, 3), kTravel), Finding::short_of_it) << "it says why";
 }
 
 }  // namespace

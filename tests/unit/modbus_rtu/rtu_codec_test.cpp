@@ -34,6 +34,37 @@ TEST(RtuRequest, of_a_write_carries_the_bytes_of_its_width_in_the_order_of_the_n
   EXPECT_EQ(request_hex(write_of(0x6F00, 0x00085555, 4), kHighFirst), "01 10 6F 00 00 02 04 00 08 55 55");
 }
 
+/// Of another table than the holding registers.
+bus::Exchange in_table(ModbusTable table, bus::Exchange exchange) {
+  exchange.object.sub = static_cast<std::uint8_t>(table);
+  return exchange;
+}
+
+TEST(RtuRequest, has_the_function_of_the_table) {
+  using enum ModbusTable;
+  EXPECT_EQ(request_hex(in_table(input, read_of(12, 4))), "01 04 00 0C 00 02");
+  EXPECT_EQ(request_hex(in_table(coil, read_of(3, 1))), "01 01 00 03 00 01");
+  EXPECT_EQ(request_hex(in_table(discrete, read_of(4, 1))), "01 02 00 04 00 01");
+  EXPECT_EQ(request_hex(in_table(coil, write_of(3, 1, 1))), "01 05 00 03 FF 00");
+  EXPECT_EQ(request_hex(in_table(coil, write_of(3, 0, 1))), "01 05 00 03 00 00");
+}
+
+TEST(RtuReply, of_another_table_is_taken_by_its_function_and_length) {
+  using enum ModbusTable;
+  const bus::Exchange bit = in_table(coil, read_of(3, 1)), pin = in_table(discrete, read_of(4, 1));
+  const bus::Exchange on = in_table(coil, write_of(3, 1, 1)), word = in_table(input, read_of(12, 2));
+  EXPECT_EQ(judged(from_hex("01 01 01 FF"), bit), shown(values({{bit.object, 1, 1}}))) << "the bits above are padding";
+  EXPECT_EQ(judged(from_hex("01 02 01 00"), pin), shown(values({{pin.object, 1, 0}})));
+  EXPECT_EQ(judged(from_hex("01 01 02 01 00"), bit), "another length");
+  EXPECT_EQ(judged(from_hex("01 02 01 01"), bit), "another function");
+  EXPECT_EQ(judged(from_hex("01 04 02 01 02"), word), shown(values({{word.object, 2, 0x0102}})));
+  EXPECT_EQ(judged(from_hex("01 03 02 01 02"), word), "another function");
+  EXPECT_EQ(judged(from_hex("01 05 00 03 FF 00"), on), shown({}));
+  EXPECT_EQ(judged(from_hex("01 05 00 03 00 00"), on), "another echo");
+  EXPECT_EQ(reply_bytes(bit), 6U);
+  EXPECT_EQ(reply_bytes(on), 8U);
+}
+
 TEST(RtuRequest, goes_to_the_unit_of_the_exchange) {
   EXPECT_EQ(request_hex(write_of(323, 6, 2, 255), stepper_node()), "FF 06 01 43 00 06");
   EXPECT_EQ(request_hex(read_of(302, 2, 247)), "F7 03 01 2E 00 01");

@@ -108,11 +108,12 @@ TEST(RtuJudgement, the_error_function_of_a_node_counts_for_its_reads_alone) {
 }
 
 TEST(RtuWellFormed, is_what_could_be_a_reply_to_some_request_of_ours) {
-  for (const char* frame : {"07 03 02 00 00", "07 06 00 00 00 00", "07 10 00 00 00 02", "07 83 02", "07 FF 02"}) {
+  for (const char* frame : {"07 03 02 00 00", "07 06 00 00 00 00", "07 10 00 00 00 02", "07 83 02", "07 FF 02",
+                            "07 01 01 01", "07 02 01 00", "07 04 02 00 00", "07 05 00 00 FF 00"}) {
     EXPECT_TRUE(well_formed(from_hex(frame))) << frame;
   }
-  for (const char* frame : {"07 03 02 00", "07 03 01 00", "07 03 00", "07 03", "07 06 00 00 00", "07 04 02 00 00",
-                            "07 83 02 00", "07 11 00 00 00 00", "07", ""}) {
+  for (const char* frame : {"07 03 02 00", "07 03 01 00", "07 03 00", "07 03", "07 06 00 00 00", "07 14 02 00 00",
+                            "07 01 02 00", "07 83 02 00", "07 11 00 00 00 00", "07", ""}) {
     EXPECT_FALSE(well_formed(from_hex(frame))) << frame;
   }
 }
