@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "gateway/commands/command_manual.hpp"
+#include "gateway/commands/command_profile.hpp"
 #include "gateway/commands/command_words.hpp"
 #include "gateway/commands/commands.hpp"
 #include "gateway/commands/commission/commission_command.hpp"
@@ -30,7 +31,7 @@ struct Parsed {
   MapOptions map;
   TopOptions top;
   TopicsOptions topics;
-  ProfileCheckOptions profile;
+  ProfileCommands profile;
   CommissionOptions commission;
   ScanOptions scan;
   ExplainOptions explain;
@@ -41,9 +42,10 @@ struct Parsed {
   std::function<int()> chosen;
 };
 
-void add_profiles(CLI::App& command, Parsed& parsed,
-                  const std::string& what = "folder of drive profiles, searched before the shipped ones") {
-  command.add_option("--profiles", parsed.profiles, what)->check(CLI::Validator(no_folder, ""))->type_name("DIR");
+void add_profiles(CLI::App& command, Parsed& parsed) {
+  command.add_option("--profiles", parsed.profiles, "folder of drive profiles, searched before the shipped ones")
+      ->check(CLI::Validator(no_folder, ""))
+      ->type_name("DIR");
 }
 
 /// An option whose value is a whole number; what it has at the beginning is its default.
@@ -148,20 +150,6 @@ void add_topics(CLI::App& app, Parsed& parsed) {
   command->add_flag("--json", parsed.topics.json, "one JSON object a line for each sample");
   command->footer("Example: axisgate topics /etc/axisgate/gateway.json");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.topics); });
-}
-
-void add_profile(CLI::App& app, Parsed& parsed) {
-  CLI::App* group = app.add_subcommand("profile", "Work with drive profiles");
-  group->require_subcommand(1);
-  CLI::App* command = group->add_subcommand("check", "Validate a profile and say what it gives on each protocol");
-  command->add_option("FILE", parsed.profile.file, "profile (JSON)")->required();
-  command->add_option("--eds", parsed.profile.eds, "compare its CANopen objects with the maker's EDS file")
-      ->type_name("FILE");
-  add_profiles(*command, parsed, "folder where profiles that it extends may lie, beside its own");
-  command->footer(
-      "Exit code 1: mistakes, or something in which profile and EDS cannot both be right.\n"
-      "Example: axisgate profile check schemas/drives/kinco-jd.json");
-  command->callback([&parsed] { choose_with_folders(parsed, parsed.profile); });
 }
 
 void add_commission(CLI::App& app, Parsed& parsed) {
@@ -290,7 +278,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_top(app, parsed);
   add_manual_commands(app, parsed.manual, parsed.chosen);
   add_topics(app, parsed);
-  add_profile(app, parsed);
+  add_profile_commands(app, parsed.profile, parsed.profiles, parsed.chosen);
   add_commission(app, parsed);
   add_scan(app, parsed);
   add_explain(app, parsed);

@@ -27,7 +27,7 @@ std::string told(const Word& word) {
          line("enable", word.refuses_enable ? "is refused while it is set" : "");
 }
 
-std::string told(const profile::Profile& profile, const profile::AlarmSpec& alarm) {
+std::string told(const profile::Profile& profile, const model::AlarmRow& alarm) {
   std::string out = fmt::format("0x{:04X} ({}", alarm.code, profile.title);
   if (alarm.value && *alarm.value != alarm.code) out += fmt::format(", its own code 0x{:X}", *alarm.value);
   return out + ", error_code)\n" + line("meaning", alarm.text) + line("remedy", alarm.remedy);
@@ -64,7 +64,7 @@ std::string explanation(const std::string& typed, const std::vector<std::string>
       out += fmt::format("0x{:04X} is of the class\n", *code) + told(*word);
   if (*code == 0) return out;
   for (const profile::Profile& profile : profiles_in(profile_folders))
-    for (const profile::AlarmSpec& alarm : profile.alarms)
+    for (const model::AlarmRow& alarm : profile.alarms)
       if (alarm.code == *code || alarm.value == *code) out += told(profile, alarm);
   return out;
 }

@@ -13,10 +13,10 @@
 
 namespace axisgate::commands {
 
-/// The exit code: 1.
+/// The exit code: 1 where there is one.
 [[nodiscard]] inline int tell(const std::vector<config::ConfigFault>& faults) {
   for (const config::ConfigFault& fault : faults) fmt::print(stderr, "{}\n", text(fault));
-  return 1;
+  return faults.empty() ? 0 : 1;
 }
 
 }  // namespace axisgate::commands

@@ -252,11 +252,96 @@ TEST_F(Scan, ShowsHowAConfigurationMayBegin) {
 
 TEST_F(Scan, NamesTheProfilesThatFitLessWhereNoneFitsWholly) {
   Node& node = nodes_[1];
-  node.add(profile("kinco-md"));
+  node.add(profile("kinco-jd"));
+  node.add(profile("kinco-md"));  // an object that both have is as wide as the MD's
   node.add({0x6041, 0}, 4);
   ScanPlan plan(shipped_);
   run(plan);
   EXPECT_THAT(scan_table(plan.found()), HasSubstr("node 1: kinco-md fits best; less: kinco-jd ("));
+}
+
+/// A drive of CiA 402 that has what every one has, and what its vendor is.
+class ScanOfAStranger : public Scan {
+ protected:
+  ScanOfAStranger() {
+    profiles_.push_back(generic_);
+    nodes_[5].add(generic_);
+    nodes_[5].add({0x1000, 0}, 4, 0x00020192);
+    nodes_[5].add({0x1018, 1}, 4, 0xFB);
+    nodes_[5].add({0x1018, 2}, 4, 0x6350);
+  }
+  FoundNode found() {
+    ScanPlan plan(profiles_);
+    run(plan);
+    return plan.found().at(0);
+  }
+  /// A user's profile with the objects that every drive has.
+  profile::Profile named(const std::string& name, std::optional<profile::IdentitySpec> identity) {
+    profile::Profile out = generic_;
+    out.name = name;
+    out.identity = std::move(identity);
+    return out;
+  }
+  std::vector<std::string> proposed() {
+    std::vector<std::string> out;
+    for (const ScanFit& fit : found().fits) out.push_back(fit.profile);
+    return out;
+  }
+
+  profile::Profile generic_ = profile("cia402-generic");
+  std::vector<profile::Profile> profiles_ = shipped_;
+};
+
+TEST_F(ScanOfAStranger, GetsTheGenericProfileAndNeverAForeignMakers) {
+  EXPECT_THAT(proposed(), ElementsAre("cia402-generic"));
+  const std::string table = scan_table({found()});
+  EXPECT_THAT(table, HasSubstr("node 5: no profile is for this drive (vendor 0x000000fb): cia402-generic is for any "
+                               "CiA 402 drive, and moves nothing before its units are known\n"));
+  EXPECT_THAT(table, HasSubstr("{\"profile\": \"cia402-generic\", \"node\": 5, \"identity\": {\"vendor\": 251"));
+  EXPECT_THAT(table, Not(HasSubstr("leadshine"))) << "although it has 28 of its objects";
+}
+
+TEST_F(ScanOfAStranger, GetsNoneWhereItIsNoDriveOfCia402) {
+  nodes_[5].add({0x1000, 0}, 4, 0x00020191);
+  EXPECT_THAT(proposed(), IsEmpty());
+  EXPECT_THAT(scan_table({found()}), HasSubstr("none fits"));
+}
+
+TEST_F(ScanOfAStranger, AProfileOfAnotherVendorIsNeverProposedHoweverWellItFits) {
+  profiles_.insert(profiles_.begin(), named("acme-servo", profile::IdentitySpec{{{{0xFC}, {}, {}}}}));
+  EXPECT_THAT(proposed(), ElementsAre("cia402-generic"));
+  EXPECT_THAT(scan_table({found()}), Not(HasSubstr("acme-servo")));
+  nodes_[5].objects.erase({0x1018, 1});
+  EXPECT_THAT(proposed(), ElementsAre("cia402-generic")) << "who does not say his vendor";
+}
+
+TEST_F(ScanOfAStranger, TheProfileThatNamesItsVendorComesFirst) {
+  profiles_.push_back(named("acme-servo", profile::IdentitySpec{{{{0xFB}, {0x6350, 0x6450}, {}}}}));
+  profiles_.back().only_simulated = true;
+  EXPECT_THAT(proposed(), ElementsAre("acme-servo", "cia402-generic"));
+  EXPECT_THAT(scan_table({found()}), HasSubstr("node 5: acme-servo: numbers from an EDS or a public list, never tried "
+                                               "on the real drive\n"));
+}
+
+TEST_F(ScanOfAStranger, AProfileForAnotherProductOfItsVendorIsNamedAndNotProposed) {
+  profiles_.push_back(named("acme-servo", profile::IdentitySpec{{{{0xFB}, {0x6450}, {}}}}));
+  EXPECT_THAT(proposed(), ElementsAre("cia402-generic"));
+  EXPECT_THAT(scan_table({found()}),
+              HasSubstr("node 5: for other products or revisions of this vendor there is acme-servo\n"));
+}
+
+TEST_F(ScanOfAStranger, AProfileThatNamesNobodyIsItsMakersByHisOwnObjects) {
+  nodes_[5].add(profile("leadshine-ld2-can"));
+  EXPECT_THAT(proposed(), ElementsAre("leadshine-ld2-can", "cia402-generic"));
+  nodes_[5].objects.erase({0x3002, 0});
+  EXPECT_THAT(proposed(), ElementsAre("cia402-generic")) << "another maker's by a single one that is missing";
+}
+
+TEST_F(ScanOfAStranger, AProfileThatNamesNobodyAndShowsNobodyIsOnlyTold) {
+  profiles_.push_back(named("acme-servo", std::nullopt));
+  EXPECT_THAT(proposed(), ElementsAre("cia402-generic"));
+  EXPECT_THAT(scan_table({found()}),
+              HasSubstr("node 5: acme-servo would fit, but says of no vendor: its \"identity\" would\n"));
 }
 
 TEST(ScanRange, IsOneNodeOrTwoEnds) {

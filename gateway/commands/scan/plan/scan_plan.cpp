@@ -12,9 +12,16 @@ constexpr ObjectAddress kDeviceName{0x1008, 0};
 constexpr std::uint16_t kIdentity = 0x1018;
 constexpr std::size_t kMaxName = 64;
 constexpr std::uint8_t kWidestField = 4;
+constexpr std::string_view kGeneric = "cia402-generic";
+
+/// CiA 301: what stands there is for each maker to say.
+bool is_makers_own(ObjectAddress address) { return address.index >= 0x2000 && address.index < 0x6000; }
+
+/// 1000h: the number of the device profile is its low word.
+bool is_cia402(const FoundNode& node) { return node.device_type && (*node.device_type & 0xFFFFU) == 0x0192U; }
 
 const profile::Place* place_of(const profile::Object& object) {
-  return object.readable ? object.place("canopen") : nullptr;
+  return object.readable && !object.part ? object.place("canopen") : nullptr;
 }
 
 std::optional<std::uint32_t> number_of(const bus::ExchangeResult& result) {
@@ -153,7 +160,10 @@ void ScanPlan::begin(Step step) {
 }
 
 void ScanPlan::end_node() {
-  current_.fits = fits();
+  const bool widths_reported = tells_widths();
+  for (const profile::Profile& profile : profiles_) judge(profile, widths_reported);
+  std::ranges::stable_sort(
+      current_.fits, [](const ScanFit& a, const ScanFit& b) { return a.by != b.by ? a.by < b.by : better_fit(a, b); });
   found_.push_back(current_);
   for (Tried& tried : tried_) tried.size.reset();
   knock_on_next();
@@ -181,28 +191,40 @@ bool ScanPlan::tells_widths() const {
   return std::ranges::any_of(tried_, [](const Tried& it) { return it.size && *it.size < kWidestField; });
 }
 
-std::vector<ScanFit> ScanPlan::fits() const {
-  const bool told = tells_widths();
-  std::vector<ScanFit> out;
-  for (const profile::Profile& profile : profiles_) {
-    ScanFit fit{profile.name, 0, 0};
-    for (const profile::Object& object : profile.objects) {
-      const profile::Place* place = place_of(object);
-      if (place == nullptr) continue;
-      const auto same = [&](const Tried& tried) { return tried.address == place->address; };
-      const auto tried = std::ranges::find_if(tried_, same);
-      if (tried == tried_.end()) continue;
-      ++fit.of;
-      const std::uint8_t size = place->type.value_or(object.type).size;
-      const auto fits_in = [&](std::uint8_t answered) {
-        return answered == size || (object.any_width && answered < size) || (!told && answered > size);
-      };
-      if (tried->size && fits_in(*tried->size)) ++fit.has;
-    }
-    if (fit.of > 0 && 2 * fit.has >= fit.of) out.push_back(std::move(fit));
+void ScanPlan::judge(const profile::Profile& profile, bool widths_reported) {
+  ScanFit fit{profile.name};
+  fit.only_simulated = profile.only_simulated;
+  int own = 0, lacks_own = 0;
+  for (const profile::Object& object : profile.objects) {
+    const profile::Place* place = place_of(object);
+    if (place == nullptr) continue;
+    const auto tried = std::ranges::find(tried_, place->address, &Tried::address);
+    if (tried == tried_.end()) continue;
+    const std::uint8_t size = object.type_at(*place).size;
+    const auto fits_in = [&](std::uint8_t answered) {
+      return answered == size || (object.any_width && answered < size) || (!widths_reported && answered > size);
+    };
+    const bool has = tried->size && fits_in(*tried->size);
+    ++fit.of;
+    fit.has += has ? 1 : 0;
+    if (!is_makers_own(place->address)) continue;
+    ++own;
+    lacks_own += has ? 0 : 1;
   }
-  std::ranges::stable_sort(out, better_fit);
-  return out;
+  if (fit.of == 0 || 2 * fit.has < fit.of) return;
+  if (profile.identity) {
+    const std::optional<std::size_t> other = profile.identity->other_in(current_.identity);
+    if (other && *other > 0) current_.of_vendor.push_back(profile.name);
+    if (other || !current_.identity[0]) return;
+    fit.by = ScanFit::By::vendor;
+  } else if (profile.name == kGeneric) {
+    if (!is_cia402(current_)) return;
+    fit.by = ScanFit::By::device_type;
+  } else if (own == 0 || lacks_own > 0) {
+    if (fit.has == fit.of) current_.nameless.push_back(profile.name);
+    return;
+  }
+  current_.fits.push_back(std::move(fit));
 }
 
 std::vector<FoundNode> ScanPlan::found() const {

@@ -2,8 +2,9 @@
 // What `axisgate scan` asks of a CANopen bus, and what it makes of the answers: which nodes are there, who they say
 // they are, and which profiles fit them. Pure: exchanges and results. Promises one exchange at a time, reads only, a
 // bound on all of them, and that a node which falls silent is left. Never writes, starts or resets anything, and never
-// takes a fit for certain: makers do not print their 1018h numbers, so a profile fits as far as the drive has the
-// profile's objects, in the profile's widths.
+// proposes a foreign maker's profile: a profile is for the vendor that it names; one that names nobody, as some makers
+// print no number, fits by its maker's own objects (2000h to 5FFFh), all of them; for any other CiA 402 drive there is
+// cia402-generic.
 #pragma once
 
 #include <array>
@@ -19,9 +20,13 @@ namespace axisgate::commands {
 
 /// Of a profile's readable objects on canopen, how many the drive has as the profile says.
 struct ScanFit {
+  /// Why it is thought to be for this drive, the strongest first.
+  enum class By : std::uint8_t { vendor, objects, device_type };
   std::string profile;
   int has = 0;
   int of = 0;
+  By by = By::objects;
+  bool only_simulated = false;  ///< model::kOnlySimulated
   friend bool operator==(const ScanFit&, const ScanFit&) = default;
 };
 
@@ -33,7 +38,9 @@ struct FoundNode {
   std::string name;                                        ///< 1008h, printable; empty: it has none
   bool fell_silent = false;                                ///< what follows its last answer is not known
   bool duplicate = false;                                  ///< two answers came to one request
-  std::vector<ScanFit> fits;  ///< the best first; those that have less than half are left out
+  std::vector<ScanFit> fits;  ///< what may be proposed, the best first; those that have less than half are left out
+  std::vector<std::string> of_vendor;  ///< profiles of its vendor that are for other products or revisions
+  std::vector<std::string> nameless;   ///< profiles that fit wholly, but neither say nor show whose they are
 };
 
 /// Of two that fit alike, the one that more objects speak for.
@@ -83,7 +90,7 @@ class ScanPlan {
   void take_name(const bus::ExchangeResult& result);
   void end_node();
   [[nodiscard]] bool tells_widths() const;
-  [[nodiscard]] std::vector<ScanFit> fits() const;
+  void judge(const profile::Profile& profile, bool widths_reported);
 
   std::vector<profile::Profile> profiles_;
   ScanRange range_;

@@ -31,11 +31,24 @@ Row row_of(const FoundNode& node) {
 
 std::vector<std::string> remarks_of(const FoundNode& node) {
   std::vector<std::string> out;
-  if (node.fits.size() > 1 && node.fits[0].has < node.fits[0].of) {
-    std::vector<std::string> others;
-    for (std::size_t i = 1; i < node.fits.size(); ++i) others.push_back(fit_text(node.fits[i]));
+  std::vector<std::string> others;
+  for (std::size_t i = 1; i < node.fits.size(); ++i)
+    if (node.fits[i].by != ScanFit::By::device_type) others.push_back(fit_text(node.fits[i]));
+  if (!others.empty() && node.fits[0].has < node.fits[0].of)
     out.push_back(fmt::format("{} fits best; less: {}", node.fits[0].profile, fmt::join(others, ", ")));
-  }
+  if (!node.fits.empty() && node.fits[0].by == ScanFit::By::device_type)
+    out.push_back(
+        fmt::format("no profile is for this drive (vendor {}): {} is for any CiA 402 drive, and moves nothing before "
+                    "its units are known",
+                    number(node.identity[0]), node.fits[0].profile));
+  if (!node.fits.empty() && node.fits[0].only_simulated)
+    out.push_back(fmt::format("{}: {}", node.fits[0].profile, model::kOnlySimulated));
+  if (!node.of_vendor.empty())
+    out.push_back(
+        fmt::format("for other products or revisions of this vendor there is {}", fmt::join(node.of_vendor, ", ")));
+  if (!node.nameless.empty())
+    out.push_back(
+        fmt::format("{} would fit, but says of no vendor: its \"identity\" would", fmt::join(node.nameless, ", ")));
   if (node.fits.empty() && node.device_type)
     out.push_back(fmt::format("device type (1000h) {:#010x}: CiA {}", *node.device_type, *node.device_type & 0xFFFFU));
   if (node.fell_silent)

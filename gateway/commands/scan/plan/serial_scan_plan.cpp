@@ -25,7 +25,7 @@ bool closes_the_line(const ObjectAddress& address, const std::string& protocol) 
 /// Where a profile's object is read on this protocol; null: it is not, or a read of it is not documented to be
 /// harmless.
 const profile::Place* read_place(const profile::Object& object, const std::string& protocol) {
-  const profile::Place* place = object.readable && !object.trigger ? object.place(protocol) : nullptr;
+  const profile::Place* place = object.readable && !object.trigger && !object.part ? object.place(protocol) : nullptr;
   return place == nullptr || closes_the_line(place->address, protocol) ? nullptr : place;
 }
 
@@ -220,7 +220,8 @@ void SerialScanPlan::next_speech() {
 std::vector<ScanFit> SerialScanPlan::fits() const {
   std::vector<ScanFit> out;
   for (const profile::Profile& profile : protocol().profiles) {
-    ScanFit fit{profile.name, 0, 0};
+    ScanFit fit{profile.name};
+    fit.only_simulated = profile.only_simulated;
     for (const profile::Object& object : profile.objects) {
       const profile::Place* place = read_place(object, protocol().name);
       if (place == nullptr) continue;
@@ -257,6 +258,8 @@ std::string serial_scan_table(const std::vector<FoundStation>& found, const std:
       remarks += fmt::format("station {}: {} fits best; less: {}\n", station.station, station.fits[0].profile,
                              fmt::join(fits, ", "));
     }
+    if (!station.fits.empty() && station.fits[0].only_simulated)
+      remarks += fmt::format("station {}: {}: {}\n", station.station, station.fits[0].profile, model::kOnlySimulated);
     const bool known = std::ranges::find(speeches, station.speech) != speeches.end();
     if (!known && !station.fits.empty()) speeches.push_back(station.speech);
   }
