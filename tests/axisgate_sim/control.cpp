@@ -18,7 +18,9 @@ constexpr std::string_view help =
     "INDEX.SUB, the register on Modbus RTU, the query code of a Keya on a serial line). A Kinco: fault "
     "2601|2602 BITS; clear 2601|2602 BITS; ignore-quick-stop on|off (an ld2 too: it shows quick stop active and turns "
     "on); stores; transitions. An id286pro: fault CODE [hardware]; clear CODE; "
-    "enable on|off; eeprom; starts. On CAN: unresponsive lose duplicate wrong-station wrong-length emergencies "
+    "enable on|off; eeprom; starts. An em2rs or a zlac8015d (its motors left and right): fault [left|right] CODE; "
+    "clear CODE; jam, position of left|right. On CAN: unresponsive lose duplicate wrong-station wrong-length "
+    "emergencies "
     "on|off|next [N]|RATE; babble [0xID] ...; exception ABORTCODE ...; restart before|after [next [N]]; nmt; "
     "emergency CODE; connect on|off; duplicate-node on|off; sdo unsized|wide|wide-sign|unnamed-abort|other-object "
     "[INDEX.SUB] on|off|next [N]|RATE; an ld2: fault CODE; clear CODE; stores; transitions. A "
@@ -231,8 +233,11 @@ std::optional<std::string> Control::ask_drive(PortLine& port, std::size_t positi
     port.keya->set_heartbeat(position, std::chrono::milliseconds(number_in(words[2])));
     return "";
   }
-  KincoDrive* kinco = port.rtu != nullptr ? port.rtu->kinco(position) : &port.serial->drive(position);
-  return kinco != nullptr ? ask_kinco(*kinco, words) : ask_id286pro(*port.rtu->id286pro(position), words);
+  if (port.rtu == nullptr) return ask_kinco(port.serial->drive(position), words);
+  if (KincoDrive* kinco = port.rtu->kinco(position)) return ask_kinco(*kinco, words);
+  if (Em2rs* em2rs = port.rtu->em2rs(position)) return ask_em2rs(*em2rs, words);
+  if (Zlac8015d* zlac = port.rtu->zlac8015d(position)) return ask_zlac8015d(*zlac, words);
+  return ask_id286pro(*port.rtu->id286pro(position), words);
 }
 
 }  // namespace axisgate::simulated

@@ -45,6 +45,8 @@ class Control {
 std::optional<std::string> ask_cia402(Cia402Drive& drive, const ControlWords& words);
 std::optional<std::string> ask_kinco(KincoDrive& drive, const ControlWords& words);
 std::optional<std::string> ask_id286pro(Id286pro& drive, const ControlWords& words);
+std::optional<std::string> ask_em2rs(Em2rs& drive, const ControlWords& words);
+std::optional<std::string> ask_zlac8015d(Zlac8015d& drive, const ControlWords& words);
 std::optional<std::string> ask_keya(KeyaDrive& drive, const ControlWords& words, Time now);
 std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::size_t position,
                                    const ControlWords& words);

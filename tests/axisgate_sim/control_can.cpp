@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The control commands of drives on CAN: the node's own, and those of a Leadshine.
+// The control commands of drives on CAN: the node's own, those of a Leadshine, and of a drive known by its EDS.
 #include "tests/axisgate_sim/control.hpp"
 
 namespace axisgate::simulated {
@@ -14,10 +14,12 @@ std::string in_decimal_and_hex(CanView bytes) {
   return " " + std::to_string(value) + " " + in_hex(raw);
 }
 
-std::optional<std::string> ask_leadshine(LeadshineDrive& drive, const ControlWords& words) {
+// A Leadshine, or a drive that is known by its EDS alone.
+template <class Drive>
+std::optional<std::string> ask_coded(Drive& drive, const ControlWords& words) {
   const std::string& command = words[0];
   if (command == "fault") {
-    need_words(words, 3, "fault LINE/NODE CODE, the value of 603F");
+    need_words(words, 3, "fault LINE/NODE CODE, of its EMCY");
     drive.inject_fault(static_cast<std::uint16_t>(number_in(words[2])));
     return "";
   }
@@ -93,8 +95,9 @@ std::optional<std::string> ask_can(Simulator& simulator, PortLine& port, std::si
   if (node == nullptr) return std::nullopt;
   if (auto told = ask_node(*node, words, now)) return told;
   if (KincoDrive* kinco = bus.kinco(position)) return ask_kinco(*kinco, words);
-  LeadshineDrive* leadshine = bus.leadshine(position);
-  return leadshine != nullptr ? ask_leadshine(*leadshine, words) : std::nullopt;
+  if (LeadshineDrive* leadshine = bus.leadshine(position)) return ask_coded(*leadshine, words);
+  EdsDrive* eds = bus.eds_drive(position);
+  return eds != nullptr ? ask_coded(*eds, words) : std::nullopt;
 }
 
 }  // namespace axisgate::simulated

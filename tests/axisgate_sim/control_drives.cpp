@@ -38,12 +38,6 @@ std::string state(const Id286pro& drive) {
 
 std::string value_text(std::int64_t value) { return " " + std::to_string(value) + " " + in_hex(value); }
 
-std::uint16_t register_in(const std::string& text) {
-  const std::int64_t number = number_in(text);
-  if (number < 0 || number > 0xFFFF) refuse_word("'" + text + "' is no register");
-  return static_cast<std::uint16_t>(number);
-}
-
 int input_in(const std::string& text, int inputs) {
   const std::int64_t input = number_in(text);
   if (input < 1 || input > inputs) refuse_word("this drive has no input " + text);

@@ -57,6 +57,12 @@ ObjectKey object_in(const std::string& text) {
   return {static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
 }
 
+std::uint16_t register_in(const std::string& text) {
+  const std::int64_t number = number_in(text);
+  if (number < 0 || number > 0xFFFF) refuse_word("'" + text + "' is no register");
+  return static_cast<std::uint16_t>(number);
+}
+
 int error_word_in(const std::string& text) {
   if (text != "2601" && text != "2602") refuse_word("'" + text + "' is no error word: write 2601 or 2602");
   return text == "2601" ? 1 : 2;

@@ -20,6 +20,7 @@ std::int64_t number_in(const std::string& text);
 bool is_whole_number(const std::string& text);
 bool on_or_off(const std::string& text);
 ObjectKey object_in(const std::string& text);
+std::uint16_t register_in(const std::string& text);
 int error_word_in(const std::string& text);
 std::string in_hex(std::int64_t value);
 void need_words(const ControlWords& words, std::size_t count, const char* form);

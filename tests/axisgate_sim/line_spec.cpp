@@ -39,24 +39,61 @@ void modify(KincoRtuDrive& drive, std::string_view word) {
   }
 }
 
+// REGISTER=VALUE, decimal or 0x...
+struct StoredRegister {
+  std::uint16_t number = 0;
+  std::int64_t value = 0;
+};
+std::optional<StoredRegister> stored_register(std::string_view word) {
+  const std::size_t equals = std::min(word.find('='), word.size() - 1);
+  const std::int64_t row = whole_number(word.substr(0, equals)).value_or(-1);
+  const auto value = whole_number(word.substr(equals + 1));
+  if (row < 0 || row > 0xFFFF || !value) return std::nullopt;
+  return StoredRegister{static_cast<std::uint16_t>(row), *value};
+}
+
 void modify(Id286proOptions& drive, std::string_view word) {
   if (word == "fresh") {
     drive.internal_pulses = false;
     return;
   }
   if (modify_mechanics(drive.mechanics, word)) return;
-  const std::size_t equals = std::min(word.find('='), word.size() - 1);
-  const std::int64_t row = whole_number(word.substr(0, equals)).value_or(-1);
-  const std::int64_t outside = std::numeric_limits<std::int64_t>::min();
-  const std::int64_t value = whole_number(word.substr(equals + 1)).value_or(outside);
+  const auto wanted = stored_register(word);
   const auto known = std::ranges::find_if(id286pro_rows(), [&](const Id286proRow& it) {
-    return it.number == row && it.saved != Saved::read_only && value >= it.minimum && value <= it.maximum;
+    return wanted && it.number == wanted->number && it.saved != Saved::read_only && wanted->value >= it.minimum &&
+           wanted->value <= it.maximum;
   });
   if (known == id286pro_rows().end()) {
     refuse_spec("drive option", word,
                 "use fresh, home=FROM..TO, limits=FROM..TO, or a stored register and its value, for example 400=11");
   }
-  drive.stored[known->number] = value;
+  drive.stored[known->number] = wanted->value;
+}
+
+// Of a drive that is a table of registers.
+template <class Drive, class Options>
+void store_register(Options& options, std::string_view word, std::string_view right) {
+  const auto wanted = stored_register(word);
+  const Drive plain{Options{}};
+  const auto row = wanted ? plain.rows().find(wanted->number) : plain.rows().end();
+  if (row == plain.rows().end() || !row->second.writable || wanted->value < row->second.minimum ||
+      wanted->value > row->second.maximum)
+    refuse_spec("drive option", word, right);
+  options.stored[wanted->number] = wanted->value;
+}
+
+void modify(Em2rsOptions& drive, std::string_view word) {
+  if (word == "fresh") {
+    drive.input_enables = true;
+  } else if (!modify_mechanics(drive.mechanics, word)) {
+    store_register<Em2rs>(drive, word,
+                          "use fresh, home=FROM..TO, limits=FROM..TO, or a stored register and its value, for example "
+                          "0x0147=0x27");
+  }
+}
+
+void modify(ZlacOptions& drive, std::string_view word) {
+  store_register<Zlac8015d>(drive, word, "use a stored register and its value, for example 0x2030=4096");
 }
 
 void modify(KincoCanDrive& drive, std::string_view word) {
@@ -71,25 +108,33 @@ void modify(KincoCanDrive& drive, std::string_view word) {
   }
 }
 
-void modify(LeadshineOptions& drive, std::string_view word) {
-  if (word == "block") {
-    drive.block = true;
-    return;
-  }
-  if (word == "ack") {
-    drive.acknowledges_setpoints = true;
-    return;
-  }
+// home=, limits= or a stored object. `as_delivered` has the objects that there are.
+template <class Options>
+void modify_or_store(Options& drive, const Cia402Drive& as_delivered, std::string_view word, std::string_view right) {
   if (modify_mechanics(drive.mechanics, word)) return;
   const std::size_t equals = std::min(word.find('='), word.size() - 1);
   const auto key = object_named(word.substr(0, equals));
   const auto value = whole_number(word.substr(equals + 1));
-  if (!key || !value || !LeadshineDrive(LeadshineOptions{}).peek(*key)) {
-    refuse_spec("drive option", word,
-                "use block, ack, home=FROM..TO, limits=FROM..TO, or a stored object in hex and its value, for example "
-                "2008.00=10000");
-  }
+  if (!key || !value || !as_delivered.peek(*key)) refuse_spec("drive option", word, right);
   drive.stored[*key] = *value;
+}
+
+void modify(LeadshineOptions& drive, std::string_view word) {
+  if (word == "block") {
+    drive.block = true;
+  } else if (word == "ack") {
+    drive.acknowledges_setpoints = true;
+  } else {
+    modify_or_store(drive, LeadshineDrive(LeadshineOptions{}), word,
+                    "use block, ack, home=FROM..TO, limits=FROM..TO, or a stored object in hex and its value, for "
+                    "example 2008.00=10000");
+  }
+}
+
+void modify(EdsDriveOptions& drive, std::string_view word) {
+  modify_or_store(drive, EdsDrive(EdsDriveOptions{.type = drive.type}), word,
+                  "use home=FROM..TO, limits=FROM..TO, or a stored object in hex and its value, for example "
+                  "605A.00=2");
 }
 
 DriveOptions parse_drive(std::string_view text, const DriveOptions& common) {
@@ -99,18 +144,23 @@ DriveOptions parse_drive(std::string_view text, const DriveOptions& common) {
   return drive;
 }
 
-RtuDriveOptions parse_rtu_drive(std::string_view text, const DriveOptions& common) {
-  if (!text.starts_with("id286pro")) {
-    const Typed it = typed(text, {"jd", "md"}, "jd, md or id286pro", 127);
-    KincoRtuDrive drive{parse_kinco(it, common), {}};
-    for (const std::string_view word : it.words) modify(drive, word);
-    return drive;
-  }
-  const Typed it = typed(text, {"id286pro"}, "jd, md or id286pro", 254);
-  Id286proOptions drive;
+template <class Options>
+RtuDriveOptions registers_of(const Typed& it, const DriveOptions& common, Options drive) {
   drive.unit = it.station;
-  drive.internal_pulses = !common.factory_fresh;
   drive.boot_time = common.boot_time;
+  for (const std::string_view word : it.words) modify(drive, word);
+  return drive;
+}
+
+RtuDriveOptions parse_rtu_drive(std::string_view text, const DriveOptions& common) {
+  const Typed it = typed(text, {"jd", "md", "id286pro", "em2rs", "cs2rs", "zlac8015d"},
+                         "jd, md, id286pro, em2rs, cs2rs or zlac8015d", text.starts_with("id286pro") ? 254 : 127);
+  if (it.type == "em2rs" || it.type == "cs2rs")
+    return registers_of(it, common,
+                        Em2rsOptions{.closed_loop = it.type == "cs2rs", .input_enables = common.factory_fresh});
+  if (it.type == "zlac8015d") return registers_of(it, common, ZlacOptions{});
+  if (it.type == "id286pro") return registers_of(it, common, Id286proOptions{.internal_pulses = !common.factory_fresh});
+  KincoRtuDrive drive{parse_kinco(it, common), {}};
   for (const std::string_view word : it.words) modify(drive, word);
   return drive;
 }
@@ -132,10 +182,21 @@ KeyaOptions parse_keya_serial(std::string_view text, LineKind kind, const DriveO
 }
 
 CanDriveOptions parse_can_drive(std::string_view text, const DriveOptions& common) {
-  const Typed it = typed(text, {"jd", "md", "ld2", "keya-can", "keya-kydas4860-2e"},
-                         "jd, md, ld2, keya-can or keya-kydas4860-2e", 127);
+  std::vector<std::string_view> types{"jd", "md", "ld2", "keya-can", "keya-kydas4860-2e"};
+  std::string names = "jd, md, ld2, keya-can, keya-kydas4860-2e";
+  for (const EdsDriveType* type : eds_drive_types()) {
+    types.push_back(type->name);
+    (names += type == eds_drive_types().back() ? " or " : ", ") += type->name;
+  }
+  const Typed it = typed(text, types, names, 127);
   if (it.type == "keya-can") return KeyaCanDrive{parse_keya(it, common)};
   if (it.type == "keya-kydas4860-2e") return KeyaCanopenDrive{parse_keya(it, common)};
+  if (const EdsDriveType* type = eds_drive_type(it.type)) {
+    EdsDriveOptions drive{
+        .type = type, .node = it.station, .boot_time = common.boot_time, .store_time = common.store_time};
+    for (const std::string_view word : it.words) modify(drive, word);
+    return drive;
+  }
   if (it.type != "ld2") {
     KincoCanDrive drive{parse_kinco(it, common), {}};
     for (const std::string_view word : it.words) modify(drive, word);

@@ -36,7 +36,8 @@ struct LineSpec {
 
 // PATH:TYPE@STATION[+fresh][+cascade][+home=FROM..TO][+limits=FROM..TO],... for Kinco's protocol, types jd and md;
 // PATH:rtu:TYPE@UNIT[+fresh][+home=FROM..TO][+limits=FROM..TO][+errors=83][+REGISTER=VALUE],... for Modbus RTU, types
-// jd, md and id286pro; IFACE:can:TYPE@NODE[+fresh][+home=FROM..TO][+limits=FROM..TO][+block][+short]
+// jd, md, id286pro, em2rs, cs2rs and zlac8015d;
+// IFACE:can:TYPE@NODE[+fresh][+home=FROM..TO][+limits=FROM..TO][+block][+short]
 // [+INDEX.SUB=VALUE],... for CANopen on a SocketCAN interface and PATH:lawicel:... behind a serial adapter, types jd,
 // md, ld2, keya-can (its maker's protocol) and keya-kydas4860-2e (its CANopen mode). PATH:keya-rs232[OPTIONS],
 // PATH:keya-rs485@NODE[OPTIONS],... and IFACE:keya-can@NODE[OPTIONS],... need no mark; keya_words.hpp has a Keya's

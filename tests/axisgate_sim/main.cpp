@@ -35,7 +35,7 @@ void describe_options(CLI::App& app, Options& options) {
       "CANopen:     axisgate-sim --line vcan0:can:ld2@1,jd@2,md@3, or --line /tmp/adapter:lawicel:ld2@1 for a serial\n"
       "             CAN adapter (Lawicel) on a pty\n"
       "A drive may carry +fresh, +cascade, +home=FROM..TO and +limits=FROM..TO (counts of the motor): jd@1+fresh.\n"
-      "On Modbus RTU a Kinco may carry +errors=83, an id286pro any stored register: id286pro@1+400=11+home=0..500.\n"
+      "On Modbus RTU a Kinco may carry +errors=83, the others any stored register: id286pro@1+400=11+home=0..500.\n"
       "On CANopen a drive may carry +block (SDO block transfer), a Kinco +short (replies shorter than 8 bytes), an "
       "ld2\n"
       "+ack (statusword bit 12 in profile position) and any stored object: ld2@1+2008.00=10000+6085.00=500000.\n"
@@ -49,7 +49,8 @@ void describe_options(CLI::App& app, Options& options) {
   app.add_option(
          "--line", options.lines,
          "PATH:TYPE@STATION[,TYPE@STATION...], type jd or md; PATH:rtu:TYPE@UNIT[,...] for Modbus RTU, type "
-         "jd, md or id286pro; one pty each, linked at PATH. IFACE:can:TYPE@NODE[,...] for CANopen on a "
+         "jd, md, id286pro, em2rs, cs2rs or zlac8015d; one pty each, linked at PATH. IFACE:can:TYPE@NODE[,...] for "
+         "CANopen on a "
          "SocketCAN interface, PATH:lawicel:TYPE@NODE[,...] behind a serial CAN adapter, type jd, md, ld2, keya-can "
          "or keya-kydas4860-2e; PATH:keya-rs232 or PATH:keya-rs485@NODE[,...] for a Keya's serial protocols")
       ->required();
@@ -57,7 +58,8 @@ void describe_options(CLI::App& app, Options& options) {
                "All drives have 6510:0B = 1 and return the host's frames, as several on one RS232 line always do");
   app.add_flag("--rs485", options.rs485, "The lines are RS485 with Kinco's protocol (MD drives only)");
   app.add_flag("--factory-fresh", options.factory_fresh,
-               "Drives as delivered: DIN1 and DIN3 block the bus, limits unwired; an id286pro waits for pulses");
+               "Drives as delivered: DIN1 and DIN3 block the bus, limits unwired; an id286pro waits for pulses, an "
+               "input enables an em2rs");
   app.add_option("--reply-delay-ms", options.reply_delay_ms,
                  "Time a drive takes to answer; else 0, 20 for an id286pro, and 1 on CAN")
       ->check(CLI::Range(0.0, 60000.0));
@@ -105,8 +107,7 @@ void build(Simulator& simulator, Control& control, const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Simulated Kinco JD, MD, iD286pro, Leadshine LD2-CAN and Keya KYDAS4860-2E drives on pseudo-terminals and CAN "
-      "interfaces, as their "
-      "makers' manuals describe them.",
+      "interfaces, as their makers' manuals describe them, and drives that only their EDS is known of.",
       "axisgate-sim"};
   Options options;
   describe_options(app, options);

@@ -25,6 +25,7 @@ std::uint8_t node_of(const CanDriveOptions& options) {
   if (const auto* kinco = std::get_if<KincoCanDrive>(&options)) return kinco->drive.station;
   if (const auto* keya = std::get_if<KeyaCanDrive>(&options)) return keya->drive.node;
   if (const auto* keya = std::get_if<KeyaCanopenDrive>(&options)) return keya->drive.node;
+  if (const auto* eds = std::get_if<EdsDriveOptions>(&options)) return eds->node;
   return std::get<LeadshineOptions>(options).node;
 }
 
@@ -33,6 +34,7 @@ std::string describe(const CanDriveOptions& options) {
   if (const auto* kinco = std::get_if<KincoCanDrive>(&options)) type = model_of(kinco->drive.type).name;
   if (std::holds_alternative<KeyaCanDrive>(options)) type = "keya-can";
   if (std::holds_alternative<KeyaCanopenDrive>(options)) type = "keya-kydas4860-2e";
+  if (const auto* eds = std::get_if<EdsDriveOptions>(&options)) type = eds->type->name;
   return type + '@' + std::to_string(node_of(options));
 }
 
@@ -45,6 +47,9 @@ std::unique_ptr<CanopenNode> make_can_node(const CanDriveOptions& options) {
   } else if (const auto* keya = std::get_if<KeyaCanopenDrive>(&options)) {
     device = std::make_unique<KeyaCanopen>(keya->drive);
     facts = communication_of(*keya);
+  } else if (const auto* eds = std::get_if<EdsDriveOptions>(&options)) {
+    device = std::make_unique<EdsDrive>(*eds);
+    facts = communication_of(*eds);
   } else if (std::holds_alternative<KeyaCanDrive>(options)) {
     throw std::invalid_argument(describe(options) + " speaks no CANopen");
   } else {
@@ -91,6 +96,11 @@ KincoDrive* CanLine::kinco(std::size_t position) {
 LeadshineDrive* CanLine::leadshine(std::size_t position) {
   CanopenNode* node = canopen(position);
   return node == nullptr ? nullptr : dynamic_cast<LeadshineDrive*>(&node->device());
+}
+
+EdsDrive* CanLine::eds_drive(std::size_t position) {
+  CanopenNode* node = canopen(position);
+  return node == nullptr ? nullptr : dynamic_cast<EdsDrive*>(&node->device());
 }
 
 KeyaDrive* CanLine::keya(std::size_t position) {

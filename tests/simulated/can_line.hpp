@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "tests/simulated/drive_faults.hpp"
+#include "tests/simulated/eds_drive.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/keya_can.hpp"
 #include "tests/simulated/keya_canopen.hpp"
@@ -24,7 +25,7 @@ struct CanLineOptions {
 
 inline constexpr int highest_can_node = 127;
 
-using CanDriveOptions = std::variant<KincoCanDrive, LeadshineOptions, KeyaCanDrive, KeyaCanopenDrive>;
+using CanDriveOptions = std::variant<KincoCanDrive, LeadshineOptions, KeyaCanDrive, KeyaCanopenDrive, EdsDriveOptions>;
 
 std::string describe(const CanDriveOptions& options);  // "jd@1", "ld2@3", "keya-can@1"
 std::uint8_t node_of(const CanDriveOptions& options);
@@ -58,6 +59,7 @@ class CanLine {
   // Nothing where another kind of drive stands there.
   KincoDrive* kinco(std::size_t position);
   LeadshineDrive* leadshine(std::size_t position);
+  EdsDrive* eds_drive(std::size_t position);
   KeyaDrive* keya(std::size_t position);  // in either protocol
   DriveFaults& faults(std::size_t position) { return slots_.at(position).faults; }
   bool has(DriveFault fault) const;

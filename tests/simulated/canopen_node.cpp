@@ -118,7 +118,8 @@ void CanopenNode::watch(Time now) {
   }
   if (guard_deadline_ && now >= *guard_deadline_) {
     guard_deadline_.reset();
-    if (cell(loss_reaction) == 1) lose_master(MasterLoss::guarding, now);  // 0: nothing (MD 4.5)
+    const bool reacts = facts_.drive_minds_guarding || cell(loss_reaction) == 1;  // 0: nothing (MD 4.5)
+    if (reacts) lose_master(MasterLoss::guarding, now);
   }
   for (Consumer& consumer : consumers_) {
     if (!consumer.deadline || now < *consumer.deadline) continue;

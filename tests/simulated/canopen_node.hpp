@@ -23,6 +23,7 @@ struct CommunicationFacts {
   SdoFacts sdo{};
   PdoFacts pdo{};
   bool guarding_objects = false;  // 100Ch, 100Dh, 100Eh and the reaction 6007h (MD 4.5); else guarding is answered only
+  bool drive_minds_guarding = false;  // 6007h is the drive's, which also says what it does without guarding
   bool answers_guarding = true;
   bool answers_guarding_with_heartbeat = true;   // CiA 301 wants one of both; no sheet says what happens
   int consumers = 1;                             // entries of 1016h; 0: there is none

@@ -7,7 +7,9 @@ namespace {
 
 constexpr ObjectKey error_register{0x1001, 0};
 constexpr std::uint16_t error_history = 0x1003;
-constexpr ObjectKey node_number{0x100B, 0};  // a Kinco's own
+
+// Objects of the communication's range that are the drive's: a Kinco's node number, and saving.
+bool of_drive(ObjectKey key) { return key.index >= 0x2000 || key == ObjectKey{0x100B, 0} || key.index == 0x1010; }
 
 }  // namespace
 
@@ -25,7 +27,7 @@ void CanopenNode::make_cells() {
     free(0x100C, 0, 1000, 2);
     free(0x100D, 0, 3, 1);
     free(0x100E, 0, cob::error_control + node, 4);
-    free(0x6007, 0, 0, 2);
+    if (!facts_.drive_minds_guarding) free(0x6007, 0, 0, 2);
   }
   free(0x1014, 0, cob::emergency + node, 4);
   if (facts_.consumers > 0) fixed(consumer_entries, 0, static_cast<std::uint32_t>(facts_.consumers), 1);
@@ -83,7 +85,7 @@ ObjectReply CanopenNode::read(ObjectKey key, Time now) {
   }
   if (own_index(key.index)) return {sdo_abort::no_such_sub};
   if (pdos_.has(key)) return pdos_.read(key);
-  if (key.index < 0x2000 && key != node_number) return {abort_of(Refusal::no_such_object)};
+  if (!of_drive(key)) return {abort_of(Refusal::no_such_object)};
   return device_->read(key, now);
 }
 
@@ -102,7 +104,7 @@ std::uint32_t CanopenNode::write(ObjectKey key, CanView bytes, std::uint64_t tag
   if (const auto found = cells_.find(key); found != cells_.end()) return write_cell(found->second, key, bytes, now);
   if (own_index(key.index)) return sdo_abort::no_such_sub;
   if (pdos_.has(key)) return pdos_.write(key, bytes, state_ == NmtState::pre_operational, *device_, now);
-  if (key.index < 0x2000 && key != node_number) return abort_of(Refusal::no_such_object);
+  if (!of_drive(key)) return abort_of(Refusal::no_such_object);
   return device_->write(key, bytes, tag, now);
 }
 
@@ -125,7 +127,7 @@ std::optional<CanBytes> CanopenNode::peek(ObjectKey key, Time now) {
 std::uint32_t CanopenNode::poke(ObjectKey key, std::int64_t value, Time now) {
   const ObjectReply present = read(key, now);
   if (present.abort != 0) return present.abort;
-  if ((key.index >= 0x2000 || key == node_number) && !cells_.contains(key)) return device_->poke(key, value);
+  if (of_drive(key) && !cells_.contains(key)) return device_->poke(key, value);
   const std::size_t width = std::min<std::size_t>(present.bytes.size(), 4);
   return write(key, little_endian(static_cast<std::uint32_t>(value), width), 0, now);
 }

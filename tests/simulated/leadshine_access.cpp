@@ -73,6 +73,8 @@ std::uint8_t LeadshineDrive::highest_sub(std::uint16_t index) const {
 
 ObjectReply LeadshineDrive::read(ObjectKey key, Time now) {
   advance(now);
+  if (const auto more = options_.more.find(key); more != options_.more.end())
+    return {0, little_endian(more->second, 4)};
   const ObjectEntry* entry = objects_.find(key);
   if (entry == nullptr) {
     if (!objects_.has_index(key.index)) return {abort_of(Refusal::no_such_object)};

@@ -16,6 +16,7 @@ struct LeadshineOptions {
   std::uint8_t node = 1;                       // on the rotary switch
   std::uint32_t encoder_counts = 10000;        // 608Fh:01; a 2500-line encoder
   std::map<ObjectKey, std::int64_t> stored{};  // objects as they were saved before the world began
+  std::map<ObjectKey, std::uint32_t> more{};   // of another drive of CiA 402: read-only, four bytes
   Mechanics mechanics{};
 
   // Not in the manual, or printed in two ways (LD2 8, 9), so tests may choose.

@@ -9,25 +9,30 @@ namespace axisgate::simulated {
 namespace {
 
 constexpr int gap_in_tenths = 35;  // of a character
-constexpr int highest_kinco = 127;
+constexpr int highest_unit = 127;
 constexpr int highest_id286pro = 254;
 
+std::unique_ptr<RtuSlave> make(const KincoRtuDrive& options) { return std::make_unique<KincoRtu>(options); }
+std::unique_ptr<RtuSlave> make(const Id286proOptions& options) { return std::make_unique<Id286pro>(options); }
+std::unique_ptr<RtuSlave> make(const Em2rsOptions& options) { return std::make_unique<Em2rs>(options); }
+std::unique_ptr<RtuSlave> make(const ZlacOptions& options) { return std::make_unique<Zlac8015d>(options); }
+
 std::unique_ptr<RtuSlave> make_slave(const RtuDriveOptions& options) {
-  if (const auto* kinco = std::get_if<KincoRtuDrive>(&options)) return std::make_unique<KincoRtu>(*kinco);
-  return std::make_unique<Id286pro>(std::get<Id286proOptions>(options));
+  return std::visit([](const auto& one) { return make(one); }, options);
 }
 
 }  // namespace
 
-std::string describe(const RtuDriveOptions& options) {
-  const auto* kinco = std::get_if<KincoRtuDrive>(&options);
-  const std::string type = kinco != nullptr ? std::string(model_of(kinco->drive.type).name) : "id286pro";
-  return type + '@' + std::to_string(unit_of(options));
-}
+std::string describe(const RtuDriveOptions& options) { return make_slave(options)->describe(); }
 
 std::uint8_t unit_of(const RtuDriveOptions& options) {
-  const auto* kinco = std::get_if<KincoRtuDrive>(&options);
-  return kinco != nullptr ? kinco->drive.station : std::get<Id286proOptions>(options).unit;
+  const auto unit = [](const auto& one) {
+    if constexpr (requires { one.unit; })
+      return one.unit;
+    else
+      return one.drive.station;
+  };
+  return std::visit(unit, options);
 }
 
 RtuLine::RtuLine(const RtuLineOptions& options, Random random, ToHostSink sink)
@@ -37,8 +42,7 @@ RtuLine::RtuLine(const RtuLineOptions& options, Random random, ToHostSink sink)
       journal_(options.journal_capacity) {}
 
 RtuSlave& RtuLine::add(const RtuDriveOptions& options) {
-  const bool kinco = std::holds_alternative<KincoRtuDrive>(options);
-  const int highest = kinco ? highest_kinco : highest_id286pro;
+  const int highest = std::holds_alternative<Id286proOptions>(options) ? highest_id286pro : highest_unit;
   if (unit_of(options) < 1 || unit_of(options) > highest) {
     throw std::invalid_argument("unit " + std::to_string(unit_of(options)) + " is outside 1 to " +
                                 std::to_string(highest));
@@ -57,6 +61,8 @@ KincoDrive* RtuLine::kinco(std::size_t position) {
 }
 
 Id286pro* RtuLine::id286pro(std::size_t position) { return dynamic_cast<Id286pro*>(&slave(position)); }
+Em2rs* RtuLine::em2rs(std::size_t position) { return dynamic_cast<Em2rs*>(&slave(position)); }
+Zlac8015d* RtuLine::zlac8015d(std::size_t position) { return dynamic_cast<Zlac8015d*>(&slave(position)); }
 
 void RtuLine::cut() {
   ByteLine::cut();

@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "tests/simulated/byte_line.hpp"
+#include "tests/simulated/em2rs.hpp"
 #include "tests/simulated/id286pro.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/kinco_rtu.hpp"
 #include "tests/simulated/rtu_receiver.hpp"
+#include "tests/simulated/zlac8015d.hpp"
 
 namespace axisgate::simulated {
 
@@ -24,7 +26,7 @@ struct RtuLineOptions {
   std::size_t journal_capacity = 1000;
 };
 
-using RtuDriveOptions = std::variant<KincoRtuDrive, Id286proOptions>;
+using RtuDriveOptions = std::variant<KincoRtuDrive, Id286proOptions, Em2rsOptions, ZlacOptions>;
 
 std::string describe(const RtuDriveOptions& options);  // "jd@1", "id286pro@3"
 std::uint8_t unit_of(const RtuDriveOptions& options);
@@ -39,6 +41,8 @@ class RtuLine final : public ByteLine {
   // Nothing where another kind of drive stands there.
   KincoDrive* kinco(std::size_t position);
   Id286pro* id286pro(std::size_t position);
+  Em2rs* em2rs(std::size_t position);
+  Zlac8015d* zlac8015d(std::size_t position);
   bool has(DriveFault fault) const override {
     return fault != DriveFault::emergencies && fault != DriveFault::heartbeat_twice;
   }

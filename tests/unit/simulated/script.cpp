@@ -167,7 +167,7 @@ ObjectKey Name::key() const {
 
 std::vector<Script> all_scripts() {
   std::vector<Script> scripts;
-  for (const char* file : {"kinco", "rtu", "id286pro", "keya", "leadshine", "canopen", "adapters", "faults"}) {
+  for (const char* file : {"kinco", "rtu", "id286pro", "keya", "leadshine", "eds", "canopen", "adapters", "faults"}) {
     std::ifstream input(test::source_path("tests/unit/simulated/scripts/") + file + ".txt");
     if (!input) throw std::runtime_error(std::string("no scripts of ") + file);
     for (std::string line; std::getline(input, line);) {
