@@ -69,7 +69,7 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${manual} COMPONENT gatew
 install(FILES ${files}/plc/axisgate.st ${files}/plc/axisgate.xml ${files}/plc/example.st ${files}/plc/example_plain.st
         DESTINATION ${manual}/deploy/plc COMPONENT gateway EXCLUDE_FROM_ALL)
 install(FILES ${files}/examples/README.md DESTINATION ${manual}/deploy/examples COMPONENT gateway EXCLUDE_FROM_ALL)
-foreach(folder modbus panels node-red ros2)
+foreach(folder modbus new_drive panels node-red ros2)
   file(GLOB examples CONFIGURE_DEPENDS ${files}/examples/${folder}/*)
   install(FILES ${examples} DESTINATION ${manual}/deploy/examples/${folder} COMPONENT gateway EXCLUDE_FROM_ALL)
 endforeach()

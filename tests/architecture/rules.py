@@ -73,7 +73,7 @@ ONE_PLACE = {
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/listing/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
-            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/scan/plan/",
+            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/scan/plan/", "gateway/commands/try/plan/",
             "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/link/", "gateway/upstream/web_link/", "gateway/upstream/web/", "gateway/upstream/feed/",
             *(f"gateway/upstream/web_process/{room}/" for room in ("time", "http", "picture", "files", "api", "stream")),
             "gateway/upstream/host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/", "adapters/keya/", "adapters/can/")

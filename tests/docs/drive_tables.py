@@ -75,9 +75,14 @@ def objects_named(quantity):
 def quantities(drive):
     objects, protocols = objects_of(drive), list(drive["protocols"])
 
+    def places(name):
+        """Of a part, those of the whole."""
+        made = objects.get(name, {})
+        return places(made["part"]["of"]) if "part" in made else made.get("at", {})
+
     def at(quantity, protocol):
         names, all_of_them = objects_named(quantity)
-        found = [place(objects[name]["at"][protocol]) for name in names if protocol in objects.get(name, {}).get("at", {})]
+        found = [place(places(name)[protocol]) for name in names if protocol in places(name)]
         return ", ".join(dict.fromkeys(found if all_of_them else found[:1])) or ""
 
     rows = [[name, *(at(quantity, protocol) for protocol in protocols)] for name, quantity in drive["quantities"].items()]

@@ -121,16 +121,6 @@ class AtTheDesk(Story):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("is valid", done.stdout)
 
-    def test_the_profile_that_contributing_shows_is_a_whole_one(self):
-        with open(f"{SOURCE}/CONTRIBUTING.md", encoding="utf-8") as page:
-            shown = page.read().partition("```json\n")[2].partition("```")[0]
-        path = self.path("acme-servo.json")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(shown)
-        done = self.command_line("profile", "check", path)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("Acme Servo, 1 motor, 2 alarms", done.stdout)
-
     def test_profile_check_names_file_and_place_of_each_mistake(self):
         path = self.path("mine.json")
         with open(f"{SOURCE}/schemas/drives/kinco-jd.json", encoding="utf-8") as file:

@@ -80,6 +80,7 @@ class OnTerminal:
         for descriptor in (self.master, self.slave):
             if descriptor >= 0:
                 os.close(descriptor)
+        self.master = self.slave = -1
 
 
 class Network:

@@ -8,7 +8,9 @@ import os
 import re
 import subprocess
 
-from processes import NEVER, Program
+from hand_stage import OnTerminal
+from processes import NEVER, Program, until
+from profile_try_test import PROMPT
 from stage import AXISGATE, PORTS, SIMULATOR, SOURCE, Story, main
 
 BLOCK = re.compile(r"^```(json|sh|text)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -71,7 +73,7 @@ class Reader:
 
     def configure(self, words):
         """As the page has it; where a drive is asked, with more time for an answer, since this machine is busy with something else."""
-        asks = words[1:2] in (["run"], ["commission"])
+        asks = words[1:2] in (["run"], ["commission"]) or words[1:3] == ["profile", "try"]
         with open(f"{self.folder}/gateway.json", "w", encoding="utf-8") as file:
             file.write(re.sub(r'"adapter":', '"timeout_ms": 1000, "adapter":', self.configuration) if asks else self.configuration)
 
@@ -86,6 +88,9 @@ class Reader:
             return
         if words[:2] == ["axisgate", "enable"]:
             self.hold(command)
+            return
+        if words[:3] == ["axisgate", "profile", "try"] and "--dry" not in words:
+            self.try_it(command)
             return
         if words[:2] == ["axisgate", "top"]:
             command = f"{command.split('#')[0]} --once"
@@ -114,6 +119,22 @@ class Reader:
         program.send(2)
         program.ended()
         self.last = self.there(program.text())
+
+    def try_it(self, command):
+        """Consents to each step, and has seen nothing wrong at the shaft."""
+        program = self.story.keep(OnTerminal(["bash", "-c", f"exec {command}"], cwd=self.folder, env=self.environment))
+        program.name = "axisgate profile try"
+        answered = 0
+
+        def asked():
+            prompts = list(PROMPT.finditer(" ".join(program.text().split())))
+            return prompts[answered] if len(prompts) > answered else program.process.poll() is not None
+        while (prompt := until("it asks, or ends", asked)) is not True:
+            answered += 1
+            program.press((prompt[1] or ("yes" if prompt[2] else "skip")).encode() + b"\n")
+        self.last = self.there(program.text().replace("\r", ""))
+        if program.ended() != 0:
+            raise AssertionError(f"{command}\n{self.last}")
 
     def compare(self, body):
         if fits(alike(body), alike(self.last)):
@@ -146,6 +167,9 @@ class OfPages(Story):
 class Manual(OfPages):
     def test_quick_start(self):
         self.read("quick_start.md")
+
+    def test_new_drive(self):
+        self.read("new_drive.md", f"{SOURCE}/deploy/examples/new_drive")
 
     def test_panels(self):
         self.read("panels.md")
