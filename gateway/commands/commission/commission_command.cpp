@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/commands/commission/commission_command.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
@@ -12,6 +10,7 @@
 #include "adapters/asio/asio_runtime.hpp"
 #include "adapters/asio/line_input.hpp"
 #include "gateway/commands/commission/commission_plan.hpp"
+#include "gateway/commands/common/axis_place.hpp"
 #include "gateway/commands/common/config_faults.hpp"
 #include "gateway/compose/gateway.hpp"
 #include "gateway/config/config_loader.hpp"
@@ -24,20 +23,6 @@ namespace {
 // A drive that has not come up by then is not there, or not on this line.
 constexpr Duration kOnlineLimit = std::chrono::seconds(15);
 constexpr Duration kWriteLimit = std::chrono::seconds(5);
-
-struct Place {
-  std::size_t bus = 0;
-  std::size_t drive = 0;
-  AxisSlot slot = 0;
-};
-
-std::optional<Place> find_axis(const compose::Models& models, AxisNumber number) {
-  for (std::size_t b = 0; b < models.size(); ++b)
-    for (std::size_t d = 0; d < models[b].size(); ++d)
-      for (std::size_t a = 0; a < models[b][d].axes.size(); ++a)
-        if (models[b][d].axes[a].number == number) return Place{b, d, static_cast<AxisSlot>(a)};
-  return std::nullopt;
-}
 
 /// The bus of one axis, running, with nobody else on it.
 class Workbench {
@@ -182,11 +167,10 @@ class Commissioning {
   bool wrote_ = false;  ///< at least tried to
 };
 
-int commission(const config::LoadedConfig& loaded, const Place& place, const CommissionOptions& options) {
+int commission(const config::LoadedConfig& loaded, const AxisPlace& place, const CommissionOptions& options) {
   const model::DriveModel& model = loaded.models[place.bus][place.drive];
   const config::BusConfig& bus = loaded.config.buses[place.bus];
-  fmt::print("axis {} \"{}\": {}, node {} on {} ({})\n", options.axis, model.axes[place.slot].name, model.title,
-             model.node, bus.name, bus.device);
+  fmt::print("{}\n", text(loaded, place));
   Workbench bench(loaded.config, loaded.models, place.bus);
   fmt::print("waiting for the drive ...\n");
   std::fflush(stdout);
@@ -215,9 +199,6 @@ int commission(const config::LoadedConfig& loaded, const Place& place, const Com
   return work.all_done() && !leaves_bad(found) ? 0 : 1;
 }
 
-/// Started without a standard input: the bus must not get its number, or frames would be taken for answers.
-bool keep_stdin_taken() { return ::fcntl(STDIN_FILENO, F_GETFD) >= 0 || ::open("/dev/null", O_RDONLY) == STDIN_FILENO; }
-
 }  // namespace
 
 int run(const CommissionOptions& options) {
@@ -228,12 +209,8 @@ int run(const CommissionOptions& options) {
   const config::LoadResult result = config::load_config(options.config, options.profile_folders);
   if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<config::LoadedConfig>(result);
-  const auto place = find_axis(loaded.models, options.axis);
-  if (!place) {
-    fmt::print(stderr, "{}: no axis {} in it\n", options.config, options.axis);
-    return 1;
-  }
-  return commission(loaded, *place, options);
+  const auto place = find_axis(loaded, options.config, options.axis);
+  return place ? commission(loaded, *place, options) : 1;
 }
 
 }  // namespace axisgate::commands

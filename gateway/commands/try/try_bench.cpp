@@ -40,7 +40,7 @@ model::DriveModel owned(model::DriveModel model) {
 
 }  // namespace
 
-TryBench::TryBench(const config::LoadedConfig& loaded, const TryPlace& place, boost::asio::io_context& io,
+TryBench::TryBench(const config::LoadedConfig& loaded, const AxisPlace& place, boost::asio::io_context& io,
                    AsioRuntime& runtime, const Log& log)
     : io_(io),
       runtime_(runtime),

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "adapters/asio/asio_runtime.hpp"
+#include "gateway/commands/common/axis_place.hpp"
 #include "gateway/commands/try/guarded_link.hpp"
 #include "gateway/commands/try/plan/try_plan.hpp"
 #include "gateway/compose/gateway.hpp"
@@ -16,17 +17,11 @@
 
 namespace axisgate::commands {
 
-struct TryPlace {
-  std::size_t bus = 0;
-  std::size_t drive = 0;
-  AxisSlot slot = 0;
-};
-
 class TryBench {
  public:
   /// Everything passed by reference outlives it.
-  TryBench(const config::LoadedConfig& loaded, const TryPlace& place, boost::asio::io_context& io, AsioRuntime& runtime,
-           const Log& log);
+  TryBench(const config::LoadedConfig& loaded, const AxisPlace& place, boost::asio::io_context& io,
+           AsioRuntime& runtime, const Log& log);
 
   /// Only reads.
   void look() { begin(false); }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/commands/try/try_command.hpp"
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 
 #include "adapters/asio/key_input.hpp"
 #include "adapters/asio/line_input.hpp"
+#include "gateway/commands/common/axis_place.hpp"
 #include "gateway/commands/common/config_faults.hpp"
 #include "gateway/commands/common/end_signals.hpp"
 #include "gateway/commands/common/exit_codes.hpp"
@@ -28,14 +28,6 @@ constexpr Duration kTurnPeriod = std::chrono::milliseconds(20);
 /// Beyond the gateway's own end on purpose: what is not closed by then is left.
 constexpr Duration kCloseLimit = compose::kClosing + std::chrono::seconds(1);
 
-std::optional<TryPlace> find_axis(const compose::Models& models, AxisNumber number) {
-  for (std::size_t b = 0; b < models.size(); ++b)
-    for (std::size_t d = 0; d < models[b].size(); ++d)
-      for (std::size_t a = 0; a < models[b][d].axes.size(); ++a)
-        if (models[b][d].axes[a].number == number) return TryPlace{b, d, static_cast<AxisSlot>(a)};
-  return std::nullopt;
-}
-
 std::string utc_now() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
@@ -44,7 +36,7 @@ std::string utc_now() {
 /// One trial, from the first look to the report.
 class Trial {
  public:
-  Trial(const config::LoadedConfig& loaded, const TryPlace& place, const TryOptions& options)
+  Trial(const config::LoadedConfig& loaded, const AxisPlace& place, const TryOptions& options)
       : log_([this](LogLevel level, std::string_view source,
                     std::string_view message) { take_log(level, source, message); },
              LogLevel::info),
@@ -152,12 +144,9 @@ int tell_end(const TryReport& report, const TryOptions& options, int code) {
   return kept && said ? code : 1;
 }
 
-int try_axis(const config::LoadedConfig& loaded, const TryPlace& place, const TryOptions& options) {
-  const model::DriveModel& model = loaded.models[place.bus][place.drive];
-  const config::BusConfig& bus = loaded.config.buses[place.bus];
+int try_axis(const config::LoadedConfig& loaded, const AxisPlace& place, const TryOptions& options) {
   Trial trial(loaded, place, options);
-  trial.say(fmt::format("axis {} \"{}\": {}, node {} on {} ({})", options.axis, model.axes[place.slot].name,
-                        model.title, model.node, bus.name, bus.device));
+  trial.say(text(loaded, place));
   if (!options.dry) {
     trial.say(
         "No function of axisgate is a safety function: keep the wired stop in reach. The other drives of this bus must "
@@ -170,9 +159,6 @@ int try_axis(const config::LoadedConfig& loaded, const TryPlace& place, const Tr
   trial.run();
   return tell_end(report, options, trial.plan().exit_code());
 }
-
-/// Started without a standard input: the bus must not get its number, or frames would be taken for answers.
-bool keep_stdin_taken() { return ::fcntl(STDIN_FILENO, F_GETFD) >= 0 || ::open("/dev/null", O_RDONLY) == STDIN_FILENO; }
 
 }  // namespace
 
@@ -190,12 +176,8 @@ int run(const TryOptions& options) {
       config::load_config(options.config, options.profile_folders, profile::Pipes::refused, config::OpenAsks::allowed);
   if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<config::LoadedConfig>(result);
-  const auto place = find_axis(loaded.models, options.axis);
-  if (!place) {
-    fmt::print(stderr, "{}: no axis {} in it\n", options.config, options.axis);
-    return 1;
-  }
-  return try_axis(loaded, *place, options);
+  const auto place = find_axis(loaded, options.config, options.axis);
+  return place ? try_axis(loaded, *place, options) : 1;
 }
 
 }  // namespace axisgate::commands
