@@ -89,7 +89,9 @@ std::map<std::uint16_t, RegisterRow> rows_of(const Em2rsOptions& options) {
 }  // namespace
 
 Em2rs::Em2rs(const Em2rsOptions& options)
-    : RegisterSlave(rows_of(options)), options_(options), axis_(options_.mechanics, held(Em2rsAt::pulses)) {
+    : RegisterSlave(rows_of(options), options.boot_time),
+      options_(options),
+      axis_(options_.mechanics, held(Em2rsAt::pulses)) {
   power_up();
 }
 
@@ -109,29 +111,13 @@ void Em2rs::power_up() {
 }
 
 void Em2rs::restart(Time now) {
-  advance(now);
-  ++restarts_;
+  RegisterSlave::restart(now);
   motion_.end();
-  boot_until_ = now + options_.boot_time;
 }
 
-bool Em2rs::quiescent() const { return !boot_until_ && !motion_.running() && axis_.speed() == 0; }
+bool Em2rs::at_rest() const { return !motion_.running() && axis_.speed() == 0; }
 
-void Em2rs::advance(Time now) {
-  const std::int64_t until = now / one_millisecond;
-  while (ticks_ < until) {
-    ticks_ = quiescent() ? until : ticks_ + 1;
-    tick(ticks_ * one_millisecond);
-  }
-  now_ = std::max(now_, now);
-}
-
-void Em2rs::tick(Time at) {
-  now_ = at;
-  if (boot_until_ && at >= *boot_until_) {
-    boot_until_.reset();
-    power_up();
-  }
+void Em2rs::step() {
   follow_switches();
   if (!enabled()) motion_.end();
   const bool ran = motion_.running();
@@ -177,7 +163,7 @@ void Em2rs::follow_switches() {
 
 // "Software forced Em2rsInput::enable has a higher priority than IO Em2rsInput::enable": 0 leaves it to the inputs.
 bool Em2rs::enabled() const {
-  return fault_ == 0 && !boot_until_ && (held(Em2rsAt::forced_enable) == 1 || active(Em2rsInput::enable));
+  return fault_ == 0 && !booting() && (held(Em2rsAt::forced_enable) == 1 || active(Em2rsInput::enable));
 }
 
 std::int64_t Em2rs::status() const {
@@ -274,7 +260,7 @@ void Em2rs::home() {
 
 void Em2rs::inject_fault(std::uint16_t code) {
   cause_ = code;
-  if (boot_until_) return;
+  if (booting()) return;
   fault_ = code;
   motion_.end();
 }

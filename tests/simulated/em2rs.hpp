@@ -29,9 +29,7 @@ class Em2rs final : public RegisterSlave {
 
   explicit Em2rs(const Em2rsOptions& options);
 
-  void advance(Time now) override;
   void restart(Time now) override;
-  bool listens() const override { return !boot_until_; }
   std::uint8_t unit() const override { return options_.unit; }
   Time answer_delay() const override { return options_.answer_delay; }
   std::string describe() const override;
@@ -47,9 +45,7 @@ class Em2rs final : public RegisterSlave {
   const Em2rsOptions& options() const { return options_; }
   bool enabled() const;
   bool running() const { return motion_.running(); }
-  bool booting() const { return boot_until_.has_value(); }
   std::uint16_t fault() const { return fault_; }
-  std::uint64_t restarts() const { return restarts_; }
   std::int32_t position() const { return static_cast<std::int32_t>(counts_of(axis_.actual())); }
   const Axis& axis() const { return axis_; }
   std::int64_t pulses_per_rev() const { return held(0x0001); }
@@ -58,9 +54,9 @@ class Em2rs final : public RegisterSlave {
   std::optional<std::int64_t> shown(std::uint16_t number) const override;
   void written(std::uint16_t number, std::int64_t value, std::uint64_t tag) override;
   void was_read(std::uint16_t number) override;
-  void power_up();
-  void tick(Time at);
-  bool quiescent() const;
+  void power_up() override;
+  void step() override;
+  bool at_rest() const override;
   void follow_switches();
   bool active(std::uint16_t function) const;
   void trigger(std::int64_t value);
@@ -83,10 +79,6 @@ class Em2rs final : public RegisterSlave {
   std::uint16_t fault_ = 0;
   std::uint16_t cause_ = 0;
   std::int64_t save_status_ = 0x1111;
-  std::int64_t ticks_ = 0;
-  Time now_{};
-  std::optional<Time> boot_until_;
-  std::uint64_t restarts_ = 0;
 };
 
 }  // namespace axisgate::simulated

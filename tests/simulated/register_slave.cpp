@@ -14,6 +14,24 @@ std::int64_t number_in(const RegisterRow& row, std::uint16_t word) {
 
 }  // namespace
 
+void RegisterSlave::advance(Time now) {
+  const std::int64_t until = now / one_millisecond;
+  while (ticks_ < until) {
+    ticks_ = !booting() && at_rest() ? until : ticks_ + 1;
+    if (booting() && ticks_ * one_millisecond >= *boot_until_) {
+      boot_until_.reset();
+      power_up();
+    }
+    step();
+  }
+}
+
+void RegisterSlave::restart(Time now) {
+  advance(now);
+  ++restarts_;
+  boot_until_ = now + boot_time_;
+}
+
 void RegisterSlave::forget() {
   for (const auto& [number, row] : rows_) values_[number] = row.initial;
 }

@@ -98,7 +98,7 @@ std::int64_t lines_in(const ZlacOptions& options, std::uint16_t number) {
 }  // namespace
 
 Zlac8015d::Zlac8015d(const ZlacOptions& options)
-    : RegisterSlave(rows_of(options)),
+    : RegisterSlave(rows_of(options), options.boot_time),
       options_(options),
       motors_{Motor{Axis(options_.mechanics[left], 4 * lines_in(options_, ZlacAt::encoder_lines)), {}},
               Motor{Axis(options_.mechanics[right], 4 * lines_in(options_, right_lines)), {}}} {
@@ -120,33 +120,12 @@ void Zlac8015d::power_up() {
   }
 }
 
-void Zlac8015d::restart(Time now) {
-  advance(now);
-  ++restarts_;
-  boot_until_ = now + options_.boot_time;
+bool Zlac8015d::at_rest() const {
+  return std::ranges::all_of(motors_,
+                             [](const Motor& motor) { return !motor.motion.running() && motor.axis.speed() == 0; });
 }
 
-bool Zlac8015d::quiescent() const {
-  return !boot_until_ && std::ranges::all_of(motors_, [](const Motor& motor) {
-    return !motor.motion.running() && motor.axis.speed() == 0;
-  });
-}
-
-void Zlac8015d::advance(Time now) {
-  const std::int64_t until = now / one_millisecond;
-  while (ticks_ < until) {
-    ticks_ = quiescent() ? until : ticks_ + 1;
-    tick(ticks_ * one_millisecond);
-  }
-  now_ = std::max(now_, now);
-}
-
-void Zlac8015d::tick(Time at) {
-  now_ = at;
-  if (boot_until_ && at >= *boot_until_) {
-    boot_until_.reset();
-    power_up();
-  }
+void Zlac8015d::step() {
   constexpr FinePosition far = INT64_MAX / 4;
   bool moves = false;
   for (Motor& motor : motors_) {
@@ -220,7 +199,7 @@ void Zlac8015d::control(std::int64_t word) {
     case 0x07:
       if (state_ == State::released) return;
       stop(false);
-      state_ = quiescent() ? State::released : State::stopping;
+      state_ = !booting() && at_rest() ? State::released : State::stopping;
       return;
     case 0x08:
       if (faulted()) return;
@@ -276,7 +255,7 @@ void Zlac8015d::stop(bool emergency) {
 
 void Zlac8015d::inject_fault(std::size_t motor, std::uint16_t bits) {
   causes_.at(motor) = bits;
-  if (boot_until_) return;
+  if (booting()) return;
   faults_.at(motor) = bits;
   for (Motor& each : motors_) each.motion.end();
 }

@@ -29,9 +29,6 @@ class Zlac8015d final : public RegisterSlave {
 
   explicit Zlac8015d(const ZlacOptions& options);
 
-  void advance(Time now) override;
-  void restart(Time now) override;
-  bool listens() const override { return !boot_until_; }
   std::uint8_t unit() const override { return options_.unit; }
   Time answer_delay() const override { return options_.answer_delay; }
   std::string describe() const override { return "zlac8015d@" + std::to_string(options_.unit); }
@@ -45,10 +42,8 @@ class Zlac8015d final : public RegisterSlave {
   // What a world looks at.
   const ZlacOptions& options() const { return options_; }
   State state() const { return state_; }
-  bool powered() const { return state_ != State::released && !faulted() && !boot_until_; }
+  bool powered() const { return state_ != State::released && !faulted() && !booting(); }
   bool faulted() const { return faults_[left] != 0 || faults_[right] != 0; }
-  bool booting() const { return boot_until_.has_value(); }
-  std::uint64_t restarts() const { return restarts_; }
   std::int32_t position(std::size_t motor) const {
     return static_cast<std::int32_t>(counts_of(motors_.at(motor).axis.actual()));
   }
@@ -62,9 +57,9 @@ class Zlac8015d final : public RegisterSlave {
   };
   std::optional<std::int64_t> shown(std::uint16_t number) const override;
   void written(std::uint16_t number, std::int64_t value, std::uint64_t tag) override;
-  void power_up();
-  void tick(Time at);
-  bool quiescent() const;
+  void power_up() override;
+  void step() override;
+  bool at_rest() const override;
   void control(std::int64_t word);
   void start(std::size_t motor);
   void follow_speed(std::size_t motor);
@@ -79,10 +74,6 @@ class Zlac8015d final : public RegisterSlave {
   std::array<std::uint16_t, 2> faults_{};
   std::array<std::uint16_t, 2> causes_{};
   bool numb_ = false;
-  std::int64_t ticks_ = 0;
-  Time now_{};
-  std::optional<Time> boot_until_;
-  std::uint64_t restarts_ = 0;
 };
 
 }  // namespace axisgate::simulated
