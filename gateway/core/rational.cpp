@@ -89,10 +89,19 @@ Rational operator/(const Rational& a, const Rational& b) {
                            static_cast<Int128>(a.denominator_) * b.numerator_);
 }
 
+Rational Rational::inverse() const {
+  if (numerator_ <= 0) return Rational(denominator_, numerator_);
+  // Lowest terms stay lowest terms: this is done for each value of each sample.
+  Rational out;
+  out.numerator_ = denominator_;
+  out.denominator_ = numerator_;
+  return out;
+}
+
 // `denominator` above 0.
 std::optional<std::int64_t> Rational::rounded(Int128 numerator, Int128 denominator) {
   Int128 quotient = numerator / denominator;
-  const Int128 rest = numerator % denominator;
+  const Int128 rest = numerator - quotient * denominator;
   const Int128 magnitude = rest < 0 ? -rest : rest;
   if (magnitude >= denominator - magnitude) quotient += numerator < 0 ? -1 : 1;
   if (quotient > kMax || quotient < kMin) return std::nullopt;

@@ -34,7 +34,8 @@ class Rational {
   [[nodiscard]] std::optional<std::int64_t> scale(std::int64_t value) const;
   /// this / divisor, rounded in the same way; no value where the divisor is 0 either.
   [[nodiscard]] std::optional<std::int64_t> over(std::int64_t divisor) const;
-  [[nodiscard]] Rational inverse() const { return Rational(denominator_, numerator_); }
+  /// Of 0: throws std::overflow_error.
+  [[nodiscard]] Rational inverse() const;
   [[nodiscard]] double to_double() const;
 
  private:

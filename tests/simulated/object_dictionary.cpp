@@ -20,8 +20,7 @@ const ObjectEntry* ObjectDictionary::find(ObjectKey key) const {
 }
 
 bool ObjectDictionary::has_index(std::uint16_t index) const {
-  const auto at = cells_.lower_bound({index, 0});
-  return at != cells_.end() && at->first.index == index;
+  return std::ranges::any_of(cells_, [index](const auto& cell) { return cell.first.index == index; });
 }
 
 ObjectDictionary::Cell& ObjectDictionary::cell(ObjectKey key) {

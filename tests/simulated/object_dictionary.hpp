@@ -4,7 +4,7 @@
 // Never gives a value a meaning: that is the drive's part.
 #pragma once
 
-#include <boost/container/flat_map.hpp>
+#include <boost/unordered/unordered_flat_map.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,7 +58,8 @@ class ObjectDictionary {
   };
   Cell& cell(ObjectKey key);
 
-  boost::container::flat_map<ObjectKey, Cell> cells_;
+  // A simulated drive looks its objects up more often than it does anything else.
+  boost::unordered_flat_map<ObjectKey, Cell, ObjectKey::Hash> cells_;
   OutOfRange out_of_range_;
 };
 

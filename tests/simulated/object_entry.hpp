@@ -5,6 +5,7 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -14,8 +15,10 @@ struct ObjectKey {
   std::uint16_t index = 0;
   std::uint8_t sub = 0;
   bool operator==(const ObjectKey&) const = default;
-  // In one comparison: a simulated drive looks its objects up more often than it does anything else.
   auto operator<=>(const ObjectKey& other) const { return number() <=> other.number(); }
+  struct Hash {
+    std::size_t operator()(const ObjectKey& key) const { return key.number(); }
+  };
 
  private:
   std::uint32_t number() const { return std::uint32_t{index} << 8 | sub; }
