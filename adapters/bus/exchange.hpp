@@ -46,8 +46,9 @@ struct Exchange {
   ObjectAddress object;
   std::uint8_t size = 0;  ///< bytes: 1, 2 or 4; 0 in a read: as many as the drive has
   std::uint32_t raw = 0;  ///< value to write, in the low `size` bytes
-  /// Modbus RTU, reads alone: objects at higher registers than `object`, ascending, read in one request from the first
-  /// register of `object` to the last of the last; registers between that are nobody's are read and dropped.
+  /// Modbus RTU: objects at higher registers than `object`, ascending, read in one request from the first
+  /// register of `object` to the last of the last; registers between that are nobody's are read and dropped. Of a
+  /// write each begins where the one before ends, and all are written at once or none is.
   /// Keya reads: objects of the same index and sub, in the order of their bytes. Keya's serial protocols, writes: the
   /// other fields of the one control frame, which carries the whole desired state of both motors each time.
   boost::container::static_vector<Neighbour, kMaxReplyFields - 1> more{};

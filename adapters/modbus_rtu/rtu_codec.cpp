@@ -18,6 +18,7 @@ constexpr std::size_t kDataSizeAt = 2;
 constexpr std::size_t kDataAt = 3;  // of the reply to a read
 constexpr std::size_t kErrorCodeAt = 2;
 constexpr std::size_t kWriteReplyFrame = 6;
+constexpr std::size_t kWriteDataAt = 7;  // of a request that writes several registers
 
 bool is_read(const bus::Exchange& exchange) { return exchange.access == bus::Access::read; }
 
@@ -29,7 +30,8 @@ Function function_of(const bus::Exchange& exchange) {
     return table == ModbusTable::input ? Function::read_input_registers : Function::read_holding_registers;
   }
   if (table == ModbusTable::coil) return Function::write_single_coil;
-  return exchange.size == 4 ? Function::write_multiple_registers : Function::write_single_register;
+  const bool several = exchange.size == 4 || !exchange.more.empty();
+  return several ? Function::write_multiple_registers : Function::write_single_register;
 }
 
 /// It reads bits, eight in a byte.
@@ -48,6 +50,12 @@ std::uint16_t register_of(const bus::Exchange& exchange) {
 void push_be16(Frame& frame, std::size_t value) {
   frame.resize(frame.size() + 2);
   store_be16({frame.data(), frame.size()}, frame.size() - 2, static_cast<std::uint16_t>(value));
+}
+
+void push_value(Frame& frame, std::uint32_t raw, std::uint8_t size, bool low_word_first) {
+  if (size != 4) return push_be16(frame, raw & (size == 1 ? 0xFFU : 0xFFFFU));
+  push_be16(frame, low_word_first ? raw & 0xFFFF : raw >> 16);
+  push_be16(frame, low_word_first ? raw >> 16 : raw & 0xFFFF);
 }
 
 std::uint32_t value_at(Bytes registers, std::size_t first, std::uint8_t size, bool low_word_first) {
@@ -103,7 +111,7 @@ Judgement judge_read(Bytes frame, const bus::Exchange& exchange, const RtuNode& 
 Judgement judge_write(Bytes frame, const bus::Exchange& exchange) {
   if (frame.size() != kWriteReplyFrame) return NotMine::malformed;
   const bool several = function_of(exchange) == Function::write_multiple_registers;
-  const std::size_t echo = several ? registers_of(exchange.size) : register_of(exchange);
+  const std::size_t echo = several ? registers_asked(exchange) : register_of(exchange);
   const bool same = load_be16(frame, kAddressAt) == exchange.object.index && load_be16(frame, kCountAt) == echo;
   if (!same) return NotMine::wrong_echo;
   return bus::ExchangeResult{};
@@ -128,19 +136,18 @@ Frame request_of(const bus::Exchange& exchange, const RtuNode& node) {
     push_be16(frame, count);
     return frame;
   }
-  assert(exchange.more.empty() && (exchange.size == 1 || exchange.size == 2 || exchange.size == 4));
+  assert(exchange.size == 1 || exchange.size == 2 || exchange.size == 4);
   if (function != Function::write_multiple_registers) {
     push_be16(frame, register_of(exchange));
     return frame;
   }
-  assert(exchange.object.index < 0xFFFF);
-  const std::size_t count = registers_of(exchange.size);
+  const std::size_t count = registers_asked(exchange);
+  assert(exchange.object.index + count <= 0x10000);
   push_be16(frame, count);
   frame.push_back(static_cast<Byte>(2 * count));
-  const std::uint32_t high = exchange.raw >> 16;
-  const std::uint32_t low = exchange.raw & 0xFFFF;
-  push_be16(frame, node.low_word_first ? low : high);
-  push_be16(frame, node.low_word_first ? high : low);
+  push_value(frame, exchange.raw, exchange.size, node.low_word_first);
+  for (const bus::Neighbour& each : exchange.more) push_value(frame, each.raw, each.size, node.low_word_first);
+  assert(frame.size() == kWriteDataAt + 2 * count);  // no holes: what lies between would be written too
   return frame;
 }
 

@@ -48,10 +48,11 @@ using Frame = boost::container::static_vector<Byte, kMaxFrame>;
 
 /// Registers that an object of `size` bytes takes.
 [[nodiscard]] constexpr std::size_t registers_of(std::uint8_t size) { return size == 4 ? 2 : 1; }
-/// Registers that a read asks for, from the first of `object` to the last of the last of `more`.
+/// Registers that it reads or writes, from the first of `object` to the last of the last of `more`.
 [[nodiscard]] std::size_t registers_asked(const bus::Exchange& exchange);
 
-/// A read of at most kMaxReadRegisters; a write of 1 or 2 bytes as one register, of 4 as two at once, never a half.
+/// A read of at most kMaxReadRegisters; a write of 1 or 2 bytes as one register, of 4 as two at once, never a half; of
+/// several objects all of them at once.
 [[nodiscard]] Frame request_of(const bus::Exchange& exchange, const RtuNode& node);
 
 /// Bytes on the wire, CRC included, of the request and of the answer that is no error.

@@ -2,8 +2,10 @@
 #include "gateway/model/model.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 
+#include "gateway/model/real32.hpp"
 #include "gateway/model/scale.hpp"
 
 namespace axisgate::model {
@@ -13,22 +15,33 @@ std::uint32_t low_bits(std::uint32_t raw, int bits) {
   return bits >= 32 ? raw : raw & ((std::uint32_t{1} << bits) - 1U);
 }
 
-int bits_of(const ObjectDef& object) { return object.is_part() ? object.part.count : 8 * object.size; }
+int bits_of(const ObjectDef& object) {
+  return object.is_part() && !object.is_directed() ? object.part.count : 8 * object.size;
+}
 
 }  // namespace
 
 std::int64_t ObjectDef::number(std::uint32_t raw) const {
+  if (is_real) return real_of_bits(raw);
   const std::int64_t value = low_bits(raw, bits_of(*this));
   const std::int64_t span = std::int64_t{1} << bits_of(*this);
   return is_signed && value >= span / 2 ? value - span : value;
 }
 
+std::uint32_t ObjectDef::raw(std::int64_t number) const {
+  if (is_real) return bits_of_real(number);
+  return low_bits(static_cast<std::uint32_t>(static_cast<std::uint64_t>(number)), 8 * size);
+}
+
 Range ObjectDef::range() const {
+  if (is_real) return {-kLargestReal, kLargestReal};
   const std::int64_t span = std::int64_t{1} << bits_of(*this);
   return is_signed ? Range{-span / 2, span / 2 - 1} : Range{0, span - 1};
 }
 
-std::uint32_t ObjectDef::mask() const { return is_part() ? low_bits(~0U, part.count) << part.from : 0; }
+std::uint32_t ObjectDef::mask() const {
+  return is_part() && !is_directed() ? low_bits(~0U, part.count) << part.from : 0;
+}
 
 std::optional<std::int64_t> Binding::to_register(std::int64_t raw) const {
   if (!codes.empty()) {
@@ -36,16 +49,21 @@ std::optional<std::int64_t> Binding::to_register(std::int64_t raw) const {
     return code == codes.end() ? std::nullopt : std::optional(code->first);
   }
   if (!scaled) return std::nullopt;
-  const std::optional<std::int64_t> value = inverse ? raw_per_unit.over(raw) : raw_per_unit.inverse().scale(raw);
+  const std::optional<std::int64_t> value = inverse   ? raw_per_unit.over(raw)
+                                            : is_real ? scaled_real(raw, raw_per_unit.inverse())
+                                                      : raw_per_unit.inverse().scale(raw);
   if (!value || !range_of(row(quantity).type).holds(*value)) return std::nullopt;
   return value;
 }
 
 std::optional<std::int64_t> Binding::to_register_or_bound(std::int64_t raw) const {
-  if (!codes.empty() || !scaled || inverse) return to_register(raw);
+  const bool no_number = is_real && std::abs(raw) > kLargestReal;
+  if (!codes.empty() || !scaled || inverse || no_number) return to_register(raw);
   const Range held = range_of(row(quantity).type);
   const bool negative = (raw < 0) != (raw_per_unit.numerator() < 0);
-  return std::clamp(raw_per_unit.inverse().scale(raw).value_or(negative ? held.min : held.max), held.min, held.max);
+  const Rational per_raw = raw_per_unit.inverse();
+  const std::optional<std::int64_t> value = is_real ? scaled_real(raw, per_raw) : per_raw.scale(raw);
+  return std::clamp(value.value_or(negative ? held.min : held.max), held.min, held.max);
 }
 
 std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef& object_def) const {
@@ -54,7 +72,10 @@ std::optional<std::int64_t> Binding::to_raw(std::int64_t value, const ObjectDef&
     return code == codes.end() ? std::nullopt : std::optional(code->second);
   }
   if (!scaled) return std::nullopt;
-  std::optional<std::int64_t> raw = inverse ? raw_per_unit.over(value) : raw_per_unit.scale(value);
+  std::optional<std::int64_t> raw = inverse ? raw_per_unit.over(value)
+                                    : is_real
+                                        ? real_of(Int128{value} * raw_per_unit.numerator(), raw_per_unit.denominator())
+                                        : raw_per_unit.scale(value);
   if (!raw) return std::nullopt;
   // Where no number of the drive meets the limit: the last one before it.
   const std::int64_t told = to_register_or_bound(*raw).value_or(value);
@@ -138,7 +159,8 @@ bool AxisModel::needs_for_state(ObjectId object) const {
 std::vector<ObjectId> DriveModel::with_parts(ObjectId object) const {
   std::vector<ObjectId> out{object};
   for (std::size_t i = 0; i < objects.size(); ++i)
-    if (objects[i].part.whole == object) out.push_back(static_cast<ObjectId>(i));
+    if (objects[i].part.whole == object || (objects[i].is_directed() && objects[i].part.sign == object))
+      out.push_back(static_cast<ObjectId>(i));
   return out;
 }
 
@@ -157,7 +179,7 @@ bool DriveModel::needs(ObjectId object) const {
 
 ObjectId DriveModel::find(ObjectAddress address, std::uint32_t mask) const {
   const auto at = std::ranges::find_if(objects, [&](const ObjectDef& candidate) {
-    return !candidate.emulated && candidate.address == address && candidate.mask() == mask;
+    return !candidate.emulated && !candidate.is_directed() && candidate.address == address && candidate.mask() == mask;
   });
   return at == objects.end() ? kNoObject : static_cast<ObjectId>(at - objects.begin());
 }

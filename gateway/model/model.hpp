@@ -47,6 +47,7 @@ struct Binding {
   std::vector<BitField> bits;
   /// raw = register value * raw_per_unit, sign of an inverted axis included.
   Rational raw_per_unit{1};
+  bool is_real = false;  ///< the drive counts in REAL32: parts of its unit count too
   bool inverse = false;  ///< raw = raw_per_unit / register value: a ramp that the drive counts as a time; 0 is neither
   ScaleRecipe recipe{};
   bool scaled = true;  ///< false: `recipe` waits for the drive's constants; the quantity has no value until then
@@ -91,6 +92,7 @@ struct Step {
   ObjectId object = kNoObject;
   Source source = Source::literal;
   std::int64_t literal = 0;  ///< as the drive counts
+  bool joined = false;       ///< in one request with the write after it
   Quantity quantity{};       ///< Source::quantity: what the client last asked for, or position_actual
   Condition until;
   Duration limit{};
@@ -338,7 +340,7 @@ struct DriveModel {
   [[nodiscard]] ObjectId whole(ObjectId id) const {
     return id != kNoObject && objects[id].is_part() ? objects[id].part.whole : id;
   }
-  /// It and its parts.
+  /// It, its parts, and those whose direction it says.
   [[nodiscard]] std::vector<ObjectId> with_parts(ObjectId object) const;
   [[nodiscard]] bool needs_for_state(ObjectId object) const;
   /// Without this object nothing may move: what needs_for_state() says, and the position.

@@ -25,7 +25,16 @@ enum class Nvm : std::uint8_t { no, unknown, yes };
 struct PartOf {
   ObjectId whole = kNoObject;  ///< kNoObject: it is no part
   std::uint8_t from = 0, count = 0;
+  /// All of the whole is a magnitude, and this object says which way: `positive` or `negative`; of another number the
+  /// way is what it was. kNoObject: the bits are the number. A write never leaves a magnitude with the wrong way.
+  ObjectId sign = kNoObject;
+  std::int64_t positive = 0, negative = 0;
 };
+
+/// "u8", "i16", "f32", as profiles have it.
+[[nodiscard]] inline std::string type_name(std::uint8_t size, bool is_signed, bool is_real) {
+  return (is_real ? 'f' : is_signed ? 'i' : 'u') + std::to_string(8 * size);
+}
 
 struct ObjectDef {
   std::string name;         ///< "statusword", "A.velocity"
@@ -33,6 +42,7 @@ struct ObjectDef {
   ObjectAddress address;    ///< of a part its whole's
   std::uint8_t size = 2;    ///< bytes: 1, 2 or 4
   bool is_signed = false;
+  bool is_real = false;  ///< REAL32: its number is real32.hpp's, in the same order
   PartOf part{};
   Range printed{INT64_MIN, INT64_MAX};  ///< what its maker's sheet says that it takes
   bool readable = true;
@@ -53,14 +63,18 @@ struct ObjectDef {
   Nvm nvm = Nvm::no;
   /// The low `size` bytes, or `part.count` bits, as the number they stand for.
   [[nodiscard]] std::int64_t number(std::uint32_t raw) const;
+  /// What goes on the wire for a number, in the low `size` bytes.
+  [[nodiscard]] std::uint32_t raw(std::int64_t number) const;
   /// Smallest and largest number of this width and sign.
   [[nodiscard]] Range range() const;
   [[nodiscard]] bool is_part() const { return part.whole != kNoObject; }
+  /// A magnitude and its direction, which stand in two objects.
+  [[nodiscard]] bool is_directed() const { return part.sign != kNoObject; }
   /// Its address, and of a part which one: two parts of one whole are two places.
   [[nodiscard]] ObjectAddress place() const {
     return {address.index, address.sub, is_part() ? part.from : address.byte};
   }
-  /// The bits of a part within its whole; 0: all, it is no part.
+  /// The bits of a part within its whole; 0: all, it is no part, or its whole's magnitude.
   [[nodiscard]] std::uint32_t mask() const;
 };
 

@@ -106,6 +106,11 @@ Range registers_within(const Range& raw, const Rational& raw_per_register, bool 
   return {saturated(ceiling_of(low * numerator, denominator)), saturated(floor_of(high * numerator, denominator))};
 }
 
+Range registers_for(const ObjectDef& object, const Range& raw, const Rational& raw_per_register, bool inverse) {
+  if (object.is_real) return {raw.min > 0 ? 1 : INT64_MIN, INT64_MAX};
+  return registers_within(intersection(raw, object.range()), raw_per_register, inverse);
+}
+
 Range intersection(const Range& a, const Range& b) { return {std::max(a.min, b.min), std::min(a.max, b.max)}; }
 
 std::optional<Rational> scale_of(const ScaleRecipe& recipe, const std::vector<std::optional<Rational>>& constants) {
@@ -137,8 +142,7 @@ void apply_recipe(Binding& binding, const std::vector<std::optional<Rational>>& 
   if (!scale) return;
   binding.raw_per_unit = *scale;
   if (row(binding.quantity).writable)
-    binding.limits = intersection(recipe.allowed,
-                                  registers_within(intersection(recipe.raw, object.range()), *scale, binding.inverse));
+    binding.limits = intersection(recipe.allowed, registers_for(object, recipe.raw, *scale, binding.inverse));
 }
 
 }  // namespace axisgate::model

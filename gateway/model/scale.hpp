@@ -54,6 +54,9 @@ using Constants = std::map<std::string, Rational, std::less<>>;
 [[nodiscard]] std::int64_t rounded_down(const Rational& value);
 /// The register values whose raw values lie in `raw`; inverse: raw_per_register / register value, `raw` from 1 on.
 [[nodiscard]] Range registers_within(const Range& raw, const Rational& raw_per_register, bool inverse = false);
+/// Those that can be written to an object which takes `raw`. REAL32 takes them all, those above 0 where it takes no 0.
+[[nodiscard]] Range registers_for(const ObjectDef& object, const Range& raw, const Rational& raw_per_register,
+                                  bool inverse);
 [[nodiscard]] Range intersection(const Range& a, const Range& b);
 
 /// fixed * product(mul) / product(div); none where a constant that it waits for is not known or not above 0, or where

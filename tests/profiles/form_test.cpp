@@ -8,7 +8,7 @@
 
 #include "gateway/profile/eds/eds_compare.hpp"
 #include "gateway/profile/make/from_form.hpp"
-#include "gateway/profile/read/profile_layers.hpp"
+#include "gateway/profile/read/profile_loader.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 

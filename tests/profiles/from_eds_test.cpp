@@ -11,7 +11,7 @@
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/make/node_answers.hpp"
 #include "gateway/profile/make/profile_text.hpp"
-#include "gateway/profile/read/profile_layers.hpp"
+#include "gateway/profile/read/profile_loader.hpp"
 #include "tests/profiles/mistakes.hpp"
 #include "tests/profiles/resolving.hpp"
 
@@ -62,6 +62,30 @@ TEST_F(ProfileFromEds, TheSameEdsNeverContradictsIt) {
     for (const EdsContradiction& found : contradictions(profile.profile, eds))
       ADD_FAILURE() << found.pointer << " [" << found.section << "] " << found.message;
   }
+}
+
+// Amounts are taken as they are; a position and a code are whole numbers, or nothing.
+TEST_F(ProfileFromEds, TakesSpeedsThatAreReal32) {
+  constexpr EdsType kReal32 = 0x08;
+  Eds eds = eds_of("complete.eds");
+  for (const int index : {0x606C, 0x6071, 0x6081, 0x6098, 0x60FF})
+    eds.objects.at({static_cast<std::uint16_t>(index), 0}).type = kReal32;
+  const MadeProfile out = made(eds);
+  const LoadedProfile profile = loaded(out);
+  EXPECT_EQ(text(profile.faults), "") << out.text;
+  EXPECT_THAT(contradictions(profile.profile, eds), IsEmpty());
+  const json written = document(eds);
+  EXPECT_EQ(written["objects"]["target_velocity"]["type"], "f32");
+  EXPECT_EQ(written["objects"]["homing_method"], nullptr);
+  EXPECT_THAT(out.notes, Contains("without homing_method (6098h): is REAL32 in the EDS"));
+  ResolveInput input = one_axis("canopen");
+  input.constants = {{"position_units_per_rev", Rational(10000)},
+                     {"speed_units_per_rpm", Rational(1)},
+                     {"acceleration_units_per_rpm_per_s", Rational(1)}};
+  const model::DriveModel model = resolved(profile, input);
+  ASSERT_EQ(model.axes[0].zero_before_enable.size(), 2U) << "what may turn the motor can be made 0";
+  for (const model::ObjectId id : model.axes[0].zero_before_enable) EXPECT_TRUE(model.object(id).is_real);
+  EXPECT_TRUE(model.axes[0].binding(Quantity::target_velocity)->is_real);
 }
 
 TEST_F(ProfileFromEds, NorDoesOneWithAnyObjectMissing) {
@@ -130,9 +154,9 @@ TEST_F(ProfileFromEds, WhatCannotBeUsedAsItIsIsTakenForMissing) {
   const MadeProfile made_of_it = made(eds_of("stubborn.dcf"));
   json out = std::get<json>(parse_json(made_of_it.text));
   for (const char* const note :
-       {"without profile_acceleration (6083h): is REAL32 in the EDS", "without target_torque (6071h): is ro in the EDS",
-        "without dc_voltage (6079h): has no DataType in the EDS"})
+       {"without target_torque (6071h): is ro in the EDS", "without dc_voltage (6079h): has no DataType in the EDS"})
     EXPECT_THAT(made_of_it.notes, Contains(note));
+  EXPECT_EQ(out["objects"]["profile_acceleration"]["type"], "f32");
   EXPECT_THAT(made_of_it.notes,
               Contains(HasSubstr("without profile_deceleration (6084h): DataType is 0x0007 in line")));
   EXPECT_EQ(out["objects"]["max_torque"]["type"], "i16");

@@ -49,12 +49,12 @@ TEST(Id286pro, EveryRegisterIsWhereAndAsTheManualSays) {
     const auto at = by_register.find(row["address"].get<std::uint16_t>());
     ASSERT_NE(at, by_register.end());
     const Object& object = *at->second;
-    EXPECT_EQ(object.type.size, 2 * row["words"].get<int>());
-    EXPECT_EQ(object.type.is_signed, row["type"].get<std::string>().starts_with("i"));
+    EXPECT_EQ(object.size, 2 * row["words"].get<int>());
+    EXPECT_EQ(object.is_signed, row["type"].get<std::string>().starts_with("i"));
     EXPECT_TRUE(object.readable);
     EXPECT_EQ(object.writable, row["access"] == "R/W");
     if (!object.writable) continue;
-    EXPECT_EQ(object.range, range_in(row["range"]));
+    EXPECT_EQ(object.printed, range_in(row["range"]).value_or(Range{INT64_MIN, INT64_MAX}));
     EXPECT_EQ(object.nvm, nvm_of(row));
   }
 }

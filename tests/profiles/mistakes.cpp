@@ -154,8 +154,11 @@ std::vector<Mistake> mistakes(std::string_view table, const std::filesystem::pat
   }
 }
 
-std::vector<Mistake> mistakes_of(const std::filesystem::path& folder) {
-  return mistakes(content(folder / "mistakes.txt"), folder / "valid");
+const std::vector<Mistake>& mistakes_of(const std::filesystem::path& folder) {
+  static std::map<std::filesystem::path, std::vector<Mistake>> known;
+  std::vector<Mistake>& out = known[folder];
+  if (out.empty()) out = mistakes(content(folder / "mistakes.txt"), folder / "valid");
+  return out;
 }
 
 std::vector<Mistake> bases_of(const std::filesystem::path& folder) {

@@ -24,8 +24,8 @@ void PrintTo(const Mistake& mistake, std::ostream* out);
 
 /// The cases of `table`, whose bases are in the folder `bases`.
 [[nodiscard]] std::vector<Mistake> mistakes(std::string_view table, const std::filesystem::path& bases);
-/// Those of FOLDER/mistakes.txt, with the bases in FOLDER/valid.
-[[nodiscard]] std::vector<Mistake> mistakes_of(const std::filesystem::path& folder);
+/// Those of FOLDER/mistakes.txt, with the bases in FOLDER/valid, read once.
+[[nodiscard]] const std::vector<Mistake>& mistakes_of(const std::filesystem::path& folder);
 /// The right files that are changed, each once: no base may have a mistake of its own. Their words are empty.
 [[nodiscard]] std::vector<Mistake> bases_of(const std::filesystem::path& folder);
 

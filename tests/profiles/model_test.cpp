@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
+#include "gateway/model/real32.hpp"
+
 namespace axisgate::profile {
 namespace {
 
@@ -35,6 +39,62 @@ TEST(ObjectDef, KnowsItsRange) {
   EXPECT_EQ(object(2, false).range(), (Range{0, 65535}));
   EXPECT_EQ(object(4, true).range(), (Range{-2147483648LL, 2147483647LL}));
   EXPECT_EQ(object(4, false).range(), (Range{0, 4294967295LL}));
+}
+
+/// The number that an f32 object has for a value.
+std::int64_t real(float value) { return model::real_of_bits(std::bit_cast<std::uint32_t>(value)); }
+
+TEST(Real32, IsTheNearestToAFraction) {
+  EXPECT_EQ(model::real_of(1, 10), real(0.1F));
+  EXPECT_EQ(model::real_of(-1, 3), real(-1.0F / 3.0F));
+  EXPECT_EQ(model::real_of(16'777'217, 1), real(16'777'216.0F)) << "half way: the even one";
+  EXPECT_EQ(model::real_of(16'777'219, 1), real(16'777'220.0F));
+  EXPECT_EQ(model::real_of(Int128{33'554'434} * 1'000'000 + 1, 2'000'000), real(16'777'218.0F))
+      << "a little more than half";
+  EXPECT_EQ(model::real_of(33'554'431, 1), real(33'554'432.0F)) << "up to the next power";
+  EXPECT_EQ(model::real_of(Int128{INT64_MAX} * INT64_MAX, 1), real(0x1p126F));
+  EXPECT_EQ(model::real_of(1, INT64_MAX), real(0x1p-63F));
+  EXPECT_EQ(model::real_of(0, 7), 0);
+  EXPECT_EQ(model::real_of_bits(0x80000000), 0) << "-0 is 0";
+  for (const float value : {1.5F, -2.25F, 3.4e38F, -1e-45F})
+    EXPECT_EQ(model::bits_of_real(real(value)), std::bit_cast<std::uint32_t>(value));
+}
+
+TEST(Real32, IsScaledWithOneRounding) {
+  EXPECT_EQ(model::scaled_real(real(0.5F), Rational(1)), 1);
+  EXPECT_EQ(model::scaled_real(real(-0.5F), Rational(1)), -1);
+  EXPECT_EQ(model::scaled_real(real(0.49999997F), Rational(1)), 0);
+  EXPECT_EQ(model::scaled_real(real(123.456F), Rational(1000)), 123'456);
+  EXPECT_EQ(model::scaled_real(real(0x1p62F), Rational(1)), std::int64_t{1} << 62);
+  EXPECT_EQ(model::scaled_real(real(0x1p63F), Rational(1)), std::nullopt);
+  EXPECT_EQ(model::scaled_real(real(3e38F), Rational(1, INT64_MAX)), std::nullopt);
+  EXPECT_EQ(model::scaled_real(real(0x1p100F), Rational(-1, std::int64_t{1} << 62)), -(std::int64_t{1} << 38));
+  EXPECT_EQ(model::scaled_real(real(1e-45F), Rational(INT64_MAX)), 0);
+  for (const std::uint32_t none : {0x7F800000U, 0xFF800000U, 0x7FC00000U})
+    EXPECT_EQ(model::scaled_real(model::real_of_bits(none), Rational(1)), std::nullopt);
+}
+
+TEST(Binding, OfAReal32NeitherTellsNorWritesWhatIsNoNumberAndKeepsItsLimits) {
+  model::ObjectDef f32 = object(4, true);
+  f32.is_real = true;
+  model::Binding speed = scaled(Quantity::target_velocity, Rational(1, 1000));
+  speed.is_real = true;
+  speed.limits = {-100'001, 100'001};
+  EXPECT_EQ(speed.to_raw(100'000, f32), real(100.0F));
+  EXPECT_EQ(speed.to_register(real(-100.0F)), -100'000);
+  EXPECT_EQ(speed.to_register(real(0.0015F)), 2);
+  for (const std::uint32_t none : {0x7F800000U, 0xFF800000U, 0x7FC00000U}) {
+    EXPECT_EQ(speed.to_register(f32.number(none)), std::nullopt);
+    EXPECT_EQ(speed.to_register_or_bound(f32.number(none)), std::nullopt);
+  }
+  EXPECT_EQ(speed.to_register(real(3e6F)), std::nullopt) << "more than its register can show";
+  EXPECT_EQ(speed.to_register_or_bound(real(-3e6F)), range_of(RegisterType::i32).min);
+  model::Binding fine = scaled(Quantity::target_velocity, Rational(1, 3));
+  fine.is_real = true;
+  fine.limits = {-1'000'000'001, 1'000'000'001};
+  const auto raw = fine.to_raw(1'000'000'001, f32);
+  ASSERT_TRUE(raw);
+  EXPECT_LE(fine.to_register(*raw), 1'000'000'001) << "the nearest one is beyond it";
 }
 
 TEST(Binding, RoundsHalfAwayFromZeroOnceAtTheEnd) {

@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(No_mistake_as, ProfileWith, ValuesIn(test::bases_of(kFo
 
 TEST(ProfileFiles, NoneOfTheMistakesWasLost) {
   EXPECT_GE(test::mistakes_of(kFolder).size(), 203U);
-  EXPECT_EQ(test::bases_of(kFolder).size(), 8U);
+  EXPECT_EQ(test::bases_of(kFolder).size(), 10U);
 }
 
 TEST(ProfileFiles, AKeepAliveOfHalfTheWatchdogsTimeIsOftenEnough) {

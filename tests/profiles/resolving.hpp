@@ -87,11 +87,11 @@ inline std::int64_t hex(const nlohmann::json& text) { return std::stoll(text.get
 /// Width, sign and access of an object are those of its row in the manual, where that gives them.
 inline void check_row(const Object& object, const nlohmann::json& row) {
   if (row["bits"].is_number()) {
-    EXPECT_EQ(object.type.size * 8, row["bits"].get<int>());
+    EXPECT_EQ(object.size * 8, row["bits"].get<int>());
   }
   const std::string type = row["type"].is_string() ? row["type"].get<std::string>() : "";
   if (!type.ends_with('?') && (type.starts_with("int") || type.starts_with("uint"))) {
-    EXPECT_EQ(object.type.is_signed, type.starts_with("int")) << type;
+    EXPECT_EQ(object.is_signed, type.starts_with("int")) << type;
   }
   const std::string access = row["access"].is_string() ? row["access"].get<std::string>() : "";
   if (access.starts_with("RO") || (access.starts_with("R") && access.find('W') == std::string::npos)) {

@@ -3,6 +3,8 @@
 #include "tests/simulated/eds_drive.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 namespace axisgate::simulated {
 namespace {
@@ -147,17 +149,30 @@ std::int64_t EdsDrive::raw_of(FinePosition position) const {
   return times(position, inverse(fine_per(units_.position, encoder_counts(), 1)));
 }
 
+std::int64_t EdsDrive::amount_of(std::int64_t raw) const {
+  if (!type().real_speeds) return raw;
+  return std::llround(std::bit_cast<float>(static_cast<std::uint32_t>(raw)) * 1000.0F);
+}
+
 Dec EdsDrive::speed_of(std::int64_t raw) const {
-  return times(raw, fine_per(units_.speed, encoder_counts(), milliseconds_per_second));
+  return times(amount_of(raw), fine_per(units_.speed, encoder_counts(), milliseconds_per_second));
 }
 
 std::int64_t EdsDrive::raw_speed_of(Dec speed) const {
-  return times(speed, inverse(fine_per(units_.speed, encoder_counts(), milliseconds_per_second)));
+  const std::int64_t amount = times(speed, inverse(fine_per(units_.speed, encoder_counts(), milliseconds_per_second)));
+  if (!type().real_speeds) return amount;
+  return std::bit_cast<std::uint32_t>(no_number_ ? NAN : static_cast<float>(amount) / 1000.0F);
 }
 
 Dec EdsDrive::acceleration_of(std::int64_t raw) const {
   constexpr std::int64_t per_ms2 = milliseconds_per_second * milliseconds_per_second;
-  return std::max<Dec>(times(raw, fine_per(units_.acceleration, encoder_counts(), per_ms2)), 1);
+  return std::max<Dec>(times(amount_of(raw), fine_per(units_.acceleration, encoder_counts(), per_ms2)), 1);
+}
+
+// 6048h and 6049h: so many rpm in so many seconds.
+Dec EdsDrive::vl_ramp(std::uint16_t index) const {
+  const std::int64_t seconds = std::max<std::int64_t>(object(index, 2), 1);
+  return std::max<Dec>(speed_dec(object(index, 1), encoder_counts()) / (seconds * milliseconds_per_second), 1);
 }
 
 void EdsDrive::refresh_settings() {
@@ -166,6 +181,10 @@ void EdsDrive::refresh_settings() {
   settings_.profile_velocity = speed_of(fastest > 0 ? std::min(object(0x6081), fastest) : object(0x6081));
   settings_.acceleration = acceleration_of(object(0x6083));
   settings_.deceleration = acceleration_of(object_or(0x6084, object(0x6083)));
+  if (mode_ == vl_mode) {
+    settings_.acceleration = vl_ramp(0x6048);
+    settings_.deceleration = vl_ramp(0x6049);
+  }
   settings_.limit_deceleration = acceleration_of(object(0x6085));
   settings_.maximum_speed = speed_dec(fastest_rpm, encoder_counts());
   settings_.full_acceleration = full_acceleration();
@@ -225,10 +244,11 @@ Refusal EdsDrive::take_write(ObjectKey key, int width, std::uint32_t raw, std::u
 }
 
 void EdsDrive::written(ObjectKey key, std::int64_t value, std::uint64_t tag) {
-  refresh_settings();
   if (key.index == 0x6040) take_controlword(static_cast<std::uint16_t>(value), tag);
   if (key.index == 0x6060) set_mode(value);
-  if (key.index == 0x60FF) take_target_speed();
+  refresh_settings();
+  const bool tells_vl = mode_ == vl_mode && (key.index == 0x6040 || key.index == 0x6042);
+  if (key.index == 0x60FF || tells_vl) take_target_speed();
 }
 
 }  // namespace axisgate::simulated

@@ -43,6 +43,7 @@ class EdsDrive final : public CanDevice, public Cia402Drive {
   // What a world does to it.
   void inject_fault(std::uint16_t code);  // its EMCY, and 603Fh where it has that; the cause stays until cleared
   void clear_fault_cause() { cause_ = 0; }
+  void tell_no_number(bool no_number) { no_number_ = no_number; }  // of REAL32 speeds
 
   // What a world looks at.
   const EdsDriveOptions& options() const { return options_; }
@@ -50,6 +51,7 @@ class EdsDrive final : public CanDevice, public Cia402Drive {
   std::int64_t encoder_counts() const { return type().encoder_counts; }
 
  private:
+  static constexpr std::int64_t vl_mode = 2;         // CiA 402's velocity mode of frequency converters
   static constexpr std::int64_t full_torque = 3000;  // per thousand of the rated torque; what the motor can give
 
   const EdsDriveType& type() const { return *options_.type; }
@@ -67,10 +69,12 @@ class EdsDrive final : public CanDevice, public Cia402Drive {
   void refresh_settings();
   std::int64_t object_or(std::uint16_t index, std::int64_t otherwise, std::uint8_t sub = 0) const;
   FinePosition fine_of(std::int64_t raw) const;
+  std::int64_t amount_of(std::int64_t raw) const;
   std::int64_t raw_of(FinePosition position) const;
   Dec speed_of(std::int64_t raw) const;
   std::int64_t raw_speed_of(Dec speed) const;
   Dec acceleration_of(std::int64_t raw) const;
+  Dec vl_ramp(std::uint16_t index) const;
 
   // eds_drive_control.cpp: modes, stops, faults, what it reports
   void heard_beside_operation(std::uint16_t) override {}
@@ -80,7 +84,7 @@ class EdsDrive final : public CanDevice, public Cia402Drive {
   void start_mode() override;
   void start_move(std::uint16_t word) override;
   void start_homing() override;
-  Dec target_speed() const override { return speed_of(object(0x60FF)); }
+  Dec target_speed() const override;
   Dec halt_deceleration() const override;
   Dec stop_deceleration(std::int64_t option) const;
   std::optional<Stop> stop_of(Cia402Command command) const override;
@@ -98,6 +102,7 @@ class EdsDrive final : public CanDevice, public Cia402Drive {
   Dec last_step_ = 0;               // change of speed in the last millisecond
   std::uint16_t error_ = 0;
   std::uint16_t cause_ = 0;  // still there
+  bool no_number_ = false;
 };
 
 CommunicationFacts communication_of(const EdsDriveOptions& options);

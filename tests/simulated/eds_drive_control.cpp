@@ -47,13 +47,20 @@ std::optional<EdsDrive::Stop> EdsDrive::stop_of(Cia402Command command) const {
   return Stop{stop_deceleration(option), command == Cia402Command::quick_stop && option >= stays_from};
 }
 
+// vl: the ramp's generator is enabled, unlocked and fed by 6042h, or its output is 0.
+Dec EdsDrive::target_speed() const {
+  constexpr std::uint16_t ramps = 0x0070;
+  if (mode_ != vl_mode) return speed_of(object(0x60FF));
+  return (controlword_ & ramps) == ramps ? speed_dec(object(0x6042), encoder_counts()) : 0;
+}
+
 void EdsDrive::halt_ended() {
-  if (mode_ == velocity_mode) motion_.run_at(target_speed(), false);
+  if (mode_ == velocity_mode || mode_ == vl_mode) motion_.run_at(target_speed(), false);
 }
 
 void EdsDrive::start_mode() {
   halted_.reset();
-  if (mode_ == velocity_mode) {
+  if (mode_ == velocity_mode || mode_ == vl_mode) {
     motion_.run_at(target_speed(), false);
   } else if (mode_ == type().torque_mode) {
     motion_.run_torque();
@@ -123,7 +130,7 @@ bool EdsDrive::target_reached() const {
     const std::int64_t error = raw_of(std::abs(axis_.demand() - axis_.actual()));
     return !commanded && error <= object_or(0x6067, 0);
   }
-  if (mode_ == velocity_mode) {
+  if (mode_ == velocity_mode || mode_ == vl_mode) {
     return std::abs(axis_.actual_speed() - target_speed()) <= speed_dec(speed_window_rpm, encoder_counts());
   }
   if (mode_ == homing_mode) return motion_.task() != Task::homing && axis_.speed() == 0;
@@ -171,6 +178,10 @@ std::optional<std::int64_t> EdsDrive::measured(ObjectKey key) const {
       return heard_controlword();
     case 0x6041:
       return statusword();
+    case 0x6043:
+      return rpm_of(axis_.speed(), encoder_counts());
+    case 0x6044:
+      return rpm_of(axis_.told_speed(), encoder_counts());
     case 0x6061:
       return mode_;
     case 0x6062:

@@ -47,6 +47,7 @@ struct EdsDriveType {
   std::int64_t encoder_counts;              // of the motor on the bench, a turn
   EdsUnits (*units)(const ObjectDictionary& objects, std::int64_t encoder_counts);
 
+  bool real_speeds = false;  // speeds and ramps are REAL32, and `units` those of their thousandths
   bool tells_counts = true;  // by an object: how many a turn has. Else a configuration must say it
 
   // CiA 301

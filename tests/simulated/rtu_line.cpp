@@ -16,6 +16,8 @@ std::unique_ptr<RtuSlave> make(const KincoRtuDrive& options) { return std::make_
 std::unique_ptr<RtuSlave> make(const Id286proOptions& options) { return std::make_unique<Id286pro>(options); }
 std::unique_ptr<RtuSlave> make(const Em2rsOptions& options) { return std::make_unique<Em2rs>(options); }
 std::unique_ptr<RtuSlave> make(const ZlacOptions& options) { return std::make_unique<Zlac8015d>(options); }
+std::unique_ptr<RtuSlave> make(const InverterOptions& options) { return std::make_unique<Inverter>(options); }
+std::unique_ptr<RtuSlave> make(const DirectDataOptions& options) { return std::make_unique<DirectData>(options); }
 
 std::unique_ptr<RtuSlave> make_slave(const RtuDriveOptions& options) {
   return std::visit([](const auto& one) { return make(one); }, options);

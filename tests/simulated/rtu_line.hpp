@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "tests/simulated/byte_line.hpp"
+#include "tests/simulated/direct_data.hpp"
 #include "tests/simulated/em2rs.hpp"
 #include "tests/simulated/id286pro.hpp"
+#include "tests/simulated/inverter.hpp"
 #include "tests/simulated/journal.hpp"
 #include "tests/simulated/kinco_rtu.hpp"
 #include "tests/simulated/rtu_receiver.hpp"
@@ -26,7 +28,8 @@ struct RtuLineOptions {
   std::size_t journal_capacity = 1000;
 };
 
-using RtuDriveOptions = std::variant<KincoRtuDrive, Id286proOptions, Em2rsOptions, ZlacOptions>;
+using RtuDriveOptions =
+    std::variant<KincoRtuDrive, Id286proOptions, Em2rsOptions, ZlacOptions, InverterOptions, DirectDataOptions>;
 
 std::string describe(const RtuDriveOptions& options);  // "jd@1", "id286pro@3"
 std::uint8_t unit_of(const RtuDriveOptions& options);

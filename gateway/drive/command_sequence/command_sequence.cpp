@@ -83,7 +83,7 @@ void CommandSequence::plan_phase() {
   if (phase_ == Phase::mode && batch_.mode && !plan.refused()) core_.mode_chosen = true;
   plan_.made = true;
   plan_.begun = false;
-  plan_.actions = std::move(plan.actions);
+  plan_.actions = with_directions(core_, std::move(plan.actions), phase_ == Phase::command);
   plan_.at = 0;
   awaiting_.end();
   if (plan.refused()) fail(plan.refusal.code, plan.refusal.detail);
@@ -127,12 +127,13 @@ CommandSequence::Move CommandSequence::granted() {
     if (in_command() && move.exchange.access != bus::Access::read) acted_ = result_.command_sent = true;
     // What it copies may come anew, by process data, before the write is acknowledged.
     if (!plan_.at_end() && plan_.action().kind == Action::Kind::write && !writes_.verifying) {
-      Action& write = plan_.actions[plan_.at];
-      write.number = number_of(write);
-      write.copy_of = model::kNoObject;
+      for (std::size_t i = plan_.at; i < plan_.at + plan_.request().size(); ++i) {
+        plan_.actions[i].number = number_of(plan_.actions[i]);
+        plan_.actions[i].copy_of = model::kNoObject;
+      }
       ++writes_.count;
       effect_.sending(core_);
-      writes_.last = write;
+      writes_.last = plan_.action();
       writes_.under_way = true;
     }
     if (phase_ == Phase::preparation) preparation_sent_ = true;
@@ -143,8 +144,13 @@ CommandSequence::Move CommandSequence::granted() {
 // Stops are exempt: a worn memory cell is the smaller harm.
 bool CommandSequence::within_nvm_budget(const bus::Exchange& exchange) {
   if (exchange.access == bus::Access::read || phase_ == Phase::stop) return true;
-  const model::ObjectId id = core_.drive.find(exchange.object);
-  return core_.nvm.take(id == model::kNoObject ? core_.drive.nvm : core_.object(id).nvm, core_.turn.now);
+  const auto worn = [&](const ObjectAddress& address) {
+    const model::ObjectId id = core_.drive.find(address);
+    return core_.nvm.take(id == model::kNoObject ? core_.drive.nvm : core_.object(id).nvm, core_.turn.now);
+  };
+  if (!worn(exchange.object)) return false;
+  return !core_.drive.composed.empty() ||
+         std::ranges::all_of(exchange.more, [&](const bus::Neighbour& each) { return worn(each.object); });
 }
 
 CommandSequence::Move CommandSequence::advance() {
@@ -208,15 +214,16 @@ CommandSequence::Move CommandSequence::advance() {
 // A word with the bits of operation enabled, for an axis that is not, by a write batch that does not ask for an enable.
 bool CommandSequence::enables_uncommanded(const Action& action) const {
   const bool asked = batch_.command == Command::enable || phase_ == Phase::controlword;
+  const auto enables = [this](const Action& each) { return is_enabling_word(core_, each.object, number_of(each)); };
   if (asked || action.kind != Action::Kind::write || writes_.verifying ||
-      !is_enabling_word(core_, action.object, number_of(action)))
+      std::ranges::none_of(plan_.request(), enables))
     return false;
   const AxisFacts facts = core_.facts();
   return !facts.enabled() || !facts.commanded;
 }
 
 void CommandSequence::pop() {
-  ++plan_.at;
+  plan_.at += writes_.verifying ? 1 : plan_.request().size();
   writes_.verifying = false;
   awaiting_.end();
 }
@@ -227,7 +234,14 @@ std::int64_t CommandSequence::number_of(const Action& action) const {
 
 CommandSequence::Move CommandSequence::exchange_for(const Action& action) const {
   const bool write = action.kind == Action::Kind::write && !writes_.verifying;
-  if (write) return {Move::Kind::exchange, write_of(core_.drive, action.object, number_of(action)), kLongAgo};
+  if (write) {
+    Move out{Move::Kind::exchange, write_of(core_.drive, action.object, number_of(action)), kLongAgo};
+    for (const Action& each : plan_.request().subspan(1)) {
+      const bus::Exchange next = write_of(core_.drive, each.object, number_of(each));
+      out.exchange.more.push_back({next.object, next.size, next.raw});
+    }
+    return out;
+  }
   const model::ObjectDef& object = core_.object(core_.to_read(action.object));
   return {Move::Kind::exchange, {core_.drive.node, bus::Access::read, object.address, object.size, 0}, kLongAgo};
 }

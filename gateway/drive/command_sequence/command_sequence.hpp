@@ -6,6 +6,7 @@
 // and never calls anybody.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "adapters/bus/exchange.hpp"
@@ -137,6 +138,12 @@ class CommandSequence {
     std::size_t at = 0;
     [[nodiscard]] bool at_end() const { return at >= actions.size(); }
     [[nodiscard]] const Action& action() const { return actions[at]; }
+    /// It, and the writes that go in one request with it.
+    [[nodiscard]] std::span<const Action> request() const {
+      std::size_t count = 1;
+      while (actions[at + count - 1].joined) ++count;
+      return {actions.data() + at, count};
+    }
   } plan_;
   Awaiting awaiting_{};
   EffectWatch effect_{};

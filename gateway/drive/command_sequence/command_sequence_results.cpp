@@ -61,15 +61,22 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
   switch (result.code) {
     case Errc::ok:
       // What a trigger object reads as proves nothing; whether the stop was seen, its wait tells.
-      if (!trusted && core_.object(action.object).readable && !core_.object(action.object).trigger) {
+      if (!trusted && core_.object(action.object).readable && !core_.object(action.object).trigger && !action.joined) {
         core_.store.invalidate(action.object);
         writes_.verifying = true;
         return;
       }
-      core_.store.acknowledged(action.object, number_of(action), sent_at);
+      for (const Action& each : plan_.request()) {
+        // Of several in one request none is read back: what is not believed is not cached, and the step after it tells.
+        const model::ObjectDef& def = core_.object(each.object);
+        if (trusted || !def.readable || def.trigger)
+          core_.store.acknowledged(each.object, number_of(each), sent_at);
+        else
+          core_.store.invalidate(each.object);
+        moved_by_write_ =
+            moved_by_write_ || (phase_ != Phase::stop && is_command_of_motion(each.object) && core_.facts().enabled());
+      }
       writes_.acknowledged = true;
-      moved_by_write_ =
-          moved_by_write_ || (phase_ != Phase::stop && is_command_of_motion(action.object) && core_.facts().enabled());
       if (by_mailbox_) core_.store.invalidate_all(action.object);
       pop();
       return;
@@ -90,9 +97,9 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
 void CommandSequence::on_lost_write(const Action& action) {
   const model::ObjectDef& object = core_.object(action.object);
   const bool could_enable = is_enabling_word(core_, action.object, number_of(action));
-  core_.store.invalidate(action.object);
+  for (const Action& each : plan_.request()) core_.store.invalidate(each.object);
   if (!could_enable && repeat_stop()) return;
-  if (object.trigger || !object.readable || (phase_ == Phase::stop && !could_enable)) {
+  if (action.joined || object.trigger || !object.readable || (phase_ == Phase::stop && !could_enable)) {
     fail(Errc::timed_out);
   } else {
     writes_.verifying = true;
@@ -128,7 +135,7 @@ void CommandSequence::on_read(model::ObjectId object, const bus::ExchangeResult&
   stop_attempt_.was_answered();
   if (writes_.verifying) {
     const model::ObjectDef& def = core_.object(object);
-    if (core_.store[object].number == def.number(wire_bits(number_of(action), def.size))) {
+    if (core_.store[object].number == def.number(def.raw(number_of(action)))) {
       pop();
     } else if (!repeat_stop()) {
       fail(Errc::timed_out);
@@ -167,8 +174,8 @@ std::string CommandSequence::missed() const {
   }
   std::string out = writes_.count == 0 ? "nothing was sent" : fmt::format("step {}", writes_.count);
   const auto hex = [&](model::ObjectId id, std::int64_t number) {
-    const std::uint8_t size = core_.object(id).size;
-    return fmt::format("0x{:0{}X}", wire_bits(number, size), 2 * size);
+    const model::ObjectDef& def = core_.object(id);
+    return fmt::format("0x{:0{}X}", def.raw(number), 2 * def.size);
   };
   if (writes_.last)
     out += fmt::format(" ({} = {})", core_.object(writes_.last->object).name,

@@ -8,7 +8,6 @@
 
 #include "gateway/drive/axis/publisher.hpp"
 #include "gateway/drive/plan/admission.hpp"
-#include "gateway/drive/plan/way_out.hpp"
 #include "gateway/drive/plan/write_exchange.hpp"
 
 namespace axisgate::drive {
@@ -126,12 +125,6 @@ std::string_view why_held(Errc code) {
 
 // Whoever has planned it: by what it would do to each motor that it reaches.
 bool Drive::may_leave(const bus::Exchange& exchange) {
-  // A bring-up that would enable gets no further, and does not spin.
-  constexpr Duration kHeldBackPause = std::chrono::milliseconds(500);
-  const model::ObjectId object = written_by(core_.model, exchange);
-  if (object == model::kNoObject) return true;
-  const model::ObjectDef& def = core_.model.object(object);
-  const std::int64_t number = def.number(exchange.raw);
   Sender sender{.keeps = on_wire_.keeps_alive.has_value()};
   const Pending* const pending = on_wire_.axis == nullptr ? nullptr : on_wire_.axis->pending().find(on_wire_.job);
   if (pending != nullptr) {
@@ -141,6 +134,14 @@ bool Drive::may_leave(const bus::Exchange& exchange) {
               .begins = asks_to_begin(sequence.batch()),
               .by = pending->begins_by()};
   }
+  const std::vector<Written> sent = sent_by(core_.axes.front()->core(), exchange);
+  return std::ranges::all_of(sent, [&](const Written& write) { return may_leave(write, sender); });
+}
+
+bool Drive::may_leave(const Written& write, const Sender& sender) {
+  // A bring-up that would enable gets no further, and does not spin.
+  constexpr Duration kHeldBackPause = std::chrono::milliseconds(500);
+  const model::ObjectDef& def = core_.model.object(write.object);
   for (auto& axis : core_.axes) {
     if (def.slot != kNoAxis && axis != core_.axes[def.slot]) continue;
     Sender as_asked = sender;
@@ -149,9 +150,9 @@ bool Drive::may_leave(const bus::Exchange& exchange) {
       if (axis->core().facts().faulted()) continue;
       if (sender.asked) as_asked.asked = axis->core().motion.record().now();
     }
-    const Errc code = held_on_way_out(axis->core(), object, number, as_asked);
+    const Errc code = held_on_way_out(axis->core(), write.object, write.number, as_asked);
     if (code == Errc::ok) continue;
-    axis->on_held_back(fmt::format("{} = {} was held back: {}", def.name, number, why_held(code)), sender.stops);
+    axis->on_held_back(fmt::format("{} = {} was held back: {}", def.name, write.number, why_held(code)), sender.stops);
     give_back(code);
     if (on_wire_.axis == nullptr && on_wire_.job != 0) core_.bus.wait(on_wire_.job, core_.turn.now + kHeldBackPause);
     return false;
@@ -186,10 +187,10 @@ void Drive::on_result(const bus::Exchange& exchange, const bus::ExchangeResult& 
       owned = true;
       axis->queue().on_result(job, result, read.sent_at, ended.trusted);
     }
-    if (const model::ObjectId id = ended.written; id != model::kNoObject) {
+    for (const auto& [id, number] : all_written(core_.model, exchange)) {
       // Whoever asked was given up while it was on the wire: what the drive holds now must be known all the same.
       if (!owned && result.code == Errc::ok && ended.trusted)
-        core_.store.acknowledged(id, core_.model.object(id).number(exchange.raw), read.sent_at);
+        core_.store.acknowledged(id, number, read.sent_at);
       else if (!owned && result.code != Errc::refused_by_drive)
         core_.store.invalidate(id);
       if (result.code == Errc::ok) core_.reads.written(id, core_.turn.now);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gateway/drive/device/drive_tasks.hpp"
+#include "gateway/drive/plan/way_out.hpp"
 
 namespace axisgate::drive {
 
@@ -58,6 +59,7 @@ class Drive final : public bus::BusDrive {
   void break_chain();
   /// The way out of all its axes; what does not pass ends its bus job.
   [[nodiscard]] bool may_leave(const bus::Exchange& exchange);
+  [[nodiscard]] bool may_leave(const Written& write, const Sender& sender);
   /// What was to be sent for an axis is not.
   void give_back(Errc code);
   void after_event();

@@ -9,8 +9,9 @@ namespace {
 
 void add(const model::DriveModel& model, std::vector<PollItem>& items, model::ObjectId object,
          model::PollClass poll_class) {
-  object = model.whole(object);
   if (object == model::kNoObject) return;
+  if (model.object(object).is_directed()) add(model, items, model.object(object).part.sign, poll_class);
+  object = model.whole(object);
   const auto found = std::ranges::find_if(items, [&](const PollItem& i) { return i.object == object; });
   if (found == items.end())
     items.push_back({object, poll_class, false});

@@ -44,7 +44,7 @@ std::string against_word_order(const model::DriveModel& model, const ObjectStore
   for (std::size_t i = 0; i < model.objects.size(); ++i) {
     const auto id = static_cast<model::ObjectId>(i);
     const model::ObjectDef& object = model.object(id);
-    if (object.size != 4 || object.emulated || object.is_part() || !store[id].known) continue;
+    if (object.size != 4 || object.emulated || object.is_part() || object.is_real || !store[id].known) continue;
     const std::int64_t number = store[id].number;
     const std::int64_t other = other_way_round(object, number);
     const bool as_it_is = plausible(model, id, number);

@@ -39,6 +39,7 @@ struct Action {
                             ///< Mark::run_raw: 1, it was not enabled before
   model::ObjectId copy_of = model::kNoObject;  ///< write: the newest number of this object instead
   model::Condition until;                      ///< wait: must hold on a sample asked for after the last acknowledgement
+  bool joined = false;                         ///< write: in one request with the one after it, which is a write
   Effect effect = Effect::none;                ///< wait: for this instead of a condition
   Duration limit{};                            ///< wait
   bool optional = false;  ///< no failure: a wait that runs out, a write of what the drive says it does not have

@@ -43,7 +43,8 @@ bool cuts_a_quantity(const AxisCore& core, const ObjectRequest& request) {
   };
   for (std::size_t i = 0; i < core.drive.objects.size(); ++i) {
     const model::ObjectDef& object = core.drive.objects[i];
-    if (object.emulated || !object.writable || !guarded(static_cast<model::ObjectId>(i))) continue;
+    const bool own = !object.emulated && !object.is_directed();
+    if (!own || !object.writable || !guarded(static_cast<model::ObjectId>(i))) continue;
     const int first = object.address.index;
     const bool overlaps = request.index <= last(first, object.size) && last(request.index, request.size) >= first;
     if (overlaps && object.address.sub == 0 && (request.index != first || request.size != object.size)) return true;

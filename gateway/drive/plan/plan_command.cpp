@@ -57,10 +57,15 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
   }
   if (core.facts().enabled() || core.mode_chosen || core.model.mode == model::kNoObject) return std::nullopt;
   // Enabling in a mode that nobody chose must not follow pulses, as a drive's own mode may that it has left its factory
-  // in.
+  // in. The first that the drive has: a frequency converter has the velocity alone.
+  static constexpr std::array kQuiet{kModePosition, kModeVelocity, kModeTorque, kModeHoming};
   const int mode = core.mode_in_force();
-  const bool quiet = mode == 1 || mode == 3 || mode == 4 || mode == 6 || core.model.is_own_velocity_mode(mode);
-  return quiet ? std::nullopt : std::optional(kModePosition);
+  if (std::ranges::find(kQuiet, mode) != kQuiet.end() || core.model.is_own_velocity_mode(mode)) return std::nullopt;
+  const auto has = [&](std::int16_t each) {
+    return std::ranges::any_of(core.model.modes, [each](const auto& row) { return row.first == each; });
+  };
+  const auto* const quiet = std::ranges::find_if(kQuiet, has);
+  return quiet == kQuiet.end() ? kModePosition : *quiet;
 }
 
 // Nothing has ended motions for good since its target was asked for; one that waits for its turn counts.
@@ -145,15 +150,6 @@ Plan plan_enable(const AxisCore& core) {
   add_virtual_enable(core, plan);
   plan.add(Action::at(Mark::enabled));
   return plan;
-}
-
-// What a step that names a quantity is to write.
-std::optional<Wanted> asked_for(const AxisCore& core, Quantity quantity) {
-  if (quantity == Quantity::target_position) return core.target_position();
-  if (quantity == Quantity::target_velocity || quantity == Quantity::target_torque)
-    return core.running_target(quantity);
-  if (const auto cached = core.value(quantity)) return Wanted{*cached};
-  return std::nullopt;
 }
 
 Plan plan_fault_reset(const AxisCore& core) {
@@ -270,16 +266,6 @@ bool append(Plan& plan, Plan more) {
   return true;
 }
 
-bool add_command_steps(const AxisCore& core, Command command, Plan& plan) {
-  const model::Steps* steps = steps_of(core, command);
-  if (steps == nullptr) {
-    plan.refusal = {Errc::not_supported, 0};
-    return false;
-  }
-  add_steps(core, *steps, plan);
-  return true;
-}
-
 Errc judge_move(const AxisCore& core, bool relative) {
   const model::Binding* target = core.model.binding(Quantity::target_position);
   const auto wanted = core.target_position();
@@ -292,44 +278,6 @@ Errc judge_move(const AxisCore& core, bool relative) {
     end += *base;
   }
   return position_range(core).holds(end) ? Errc::ok : Errc::bad_value;
-}
-
-const model::Steps* steps_of(const AxisCore& core, Command command) {
-  const auto& def = core.model.command(command);
-  if (!def) return nullptr;
-  const int mode = core.mode_in_force();
-  for (const model::CommandDef::Variant& variant : def->variants)
-    if (std::find(variant.modes.begin(), variant.modes.end(), mode) != variant.modes.end()) return &variant.steps;
-  return def->steps.empty() && !def->variants.empty() ? nullptr : &def->steps;
-}
-
-void add_steps(const AxisCore& core, const model::Steps& steps, Plan& plan) {
-  for (const model::Step& step : steps) {
-    switch (step.verb) {
-      case model::Step::Verb::write:
-        if (step.source == model::Step::Source::literal) {
-          plan.add(Action::write(step.object, step.literal));
-        } else if (step.source == model::Step::Source::set_position) {
-          const model::Binding* unit = core.model.binding(step.quantity);
-          const auto raw = unit->to_raw(core.set_position_value, core.object(step.object));
-          if (raw) plan.add(Action::write(step.object, *raw));
-        } else if (step.quantity == Quantity::position_actual) {
-          const model::Binding* actual = core.model.binding(Quantity::position_actual);
-          if (actual == nullptr) break;
-          plan.add(Action::read(actual->object));
-          plan.add(Action::copy(actual->object, step.object));
-        } else if (const auto wanted = asked_for(core, step.quantity)) {
-          static_cast<void>(add_write(core, step.quantity, *wanted, plan));
-        }
-        break;
-      case model::Step::Verb::wait:
-        plan.add(Action::wait(step.until, step.limit, step.optional, step.otherwise));
-        break;
-      case model::Step::Verb::require:
-        plan.add(Action::wait(step.until, Duration{}, false, step.otherwise));
-        break;
-    }
-  }
 }
 
 bool refused_by_state(const AxisCore& core, Command command) {

@@ -94,6 +94,10 @@ bool append(Plan& plan, Plan more);
 [[nodiscard]] Plan look_at_state(const AxisCore& core);
 /// Appends the profile's steps.
 void add_steps(const AxisCore& core, const model::Steps& steps, Plan& plan);
+/// A directed object's way before its magnitude, and before another way a magnitude of 0: whatever of it is carried
+/// out, the motor never turns the wrong way. 0 has no way. `starts`: a way that is a trigger is written also where it
+/// is the same.
+[[nodiscard]] std::vector<Action> with_directions(const AxisCore& core, std::vector<Action> actions, bool starts);
 /// Appends the command's steps in the mode in force; false (and refused) where the drive has none.
 bool add_command_steps(const AxisCore& core, Command command, Plan& plan);
 /// Writes the mode, whatever is in force, and waits until the drive shows it; nothing where it is none of the drive's.

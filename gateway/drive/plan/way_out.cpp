@@ -72,6 +72,22 @@ bool starts_within_limits(const AxisCore& core, model::ObjectId object, std::int
 
 }  // namespace
 
+std::vector<Written> sent_by(const AxisCore& core, const bus::Exchange& exchange) {
+  const AllWritten plain = all_written(core.drive, exchange);
+  std::vector<Written> out(plain.begin(), plain.end());
+  for (const Written& write : plain)
+    for (const model::ObjectId id : core.drive.with_parts(write.object)) {
+      const model::PartOf& made_of = core.object(id).part;
+      if (!core.object(id).is_directed()) continue;
+      const bool is_way = write.object == made_of.sign;
+      const std::int64_t way = is_way ? write.number : core.store[made_of.sign].number;
+      const std::int64_t magnitude = is_way ? core.store[made_of.whole].number : write.number;
+      if (is_way && way != made_of.positive && way != made_of.negative) continue;
+      out.push_back({id, way == made_of.negative ? -magnitude : magnitude});
+    }
+  return out;
+}
+
 Reach reach_of(const AxisCore& core, model::ObjectId object, std::int64_t number) {
   if (is_enabling_word(core, object, number)) return Reach::enables;
   if (moves_as_target(core, object, number)) return Reach::moves;

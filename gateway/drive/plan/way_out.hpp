@@ -7,9 +7,13 @@
 
 #include <optional>
 
+#include "gateway/drive/plan/write_exchange.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 
 namespace axisgate::drive {
+
+/// What an exchange brings the drive: what it writes, and the directed objects whose magnitude or direction that is.
+[[nodiscard]] std::vector<Written> sent_by(const AxisCore& core, const bus::Exchange& exchange);
 
 /// What a write could do to the motor, from the least to the most.
 enum class Reach : std::uint8_t { nothing, enables, moves };

@@ -202,11 +202,13 @@ void AxisCore::started(MotionKind kind, bool relative, std::optional<std::int64_
 }
 
 model::ObjectId AxisCore::to_read(model::ObjectId id) const {
-  if (id != model.statusword || !object(id).emulated) return drive.whole(id);
   const auto older = [&](model::ObjectId a, model::ObjectId b) {
     if (store[a].refused != store[b].refused) return store[b].refused;
     return store[a].exchange < store[b].exchange;
   };
+  if (id != model::kNoObject && object(id).is_directed())
+    return drive.whole(std::min(object(id).part.whole, object(id).part.sign, older));
+  if (id != model.statusword || !object(id).emulated) return drive.whole(id);
   return drive.whole(*std::ranges::min_element(model.state_sources, older));
 }
 

@@ -91,8 +91,8 @@ struct AxisCore {
   void make(model::ObjectId id, std::int64_t number);
   /// The drive has acknowledged a start. `relative`: the target is a distance. `ends_at`: see Action.
   void started(MotionKind kind, bool relative, std::optional<std::int64_t> ends_at);
-  /// What must be read to know this object: itself, or the whole it is a part of, or, of an `emulated` statusword, the
-  /// oldest of its samples.
+  /// What must be read to know this object: itself, or the whole it is a part of; of an `emulated` statusword and of a
+  /// directed object the oldest of its samples.
   [[nodiscard]] model::ObjectId to_read(model::ObjectId id) const;
   /// New samples, or time has passed: whether there is a fault, and what names it.
   void watch_fault();

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is known of each object of one drive: the number last read or acknowledged, and when its request was sent.
 // Promises that a number counts as cached only while nothing has happened that could have changed it unseen
-// (design 3.3), that objects at one place of the drive hold one number, and that a part holds what its whole does.
+// (design 3.3), that objects at one place of the drive hold one number, that a part holds what its whole does, and a
+// directed object what its magnitude and its direction do.
 // Never holds a value of a suspect drive: the drive does not put one in.
 #pragma once
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 #include <vector>
 
 #include "gateway/model/model.hpp"
@@ -38,12 +40,16 @@ class ObjectStore {
     for (std::size_t i = 0; i < objects.size(); ++i) {
       aliases_[i] = objects[i].aliases;
       wholes_[i] = objects[i].part.whole;
-      if (objects[i].is_part()) parts_[wholes_[i]].push_back({static_cast<model::ObjectId>(i), objects[i]});
+      if (objects[i].is_directed())
+        directed_.push_back({static_cast<model::ObjectId>(i), objects[i].part});
+      else if (objects[i].is_part())
+        parts_[wholes_[i]].push_back({static_cast<model::ObjectId>(i), objects[i]});
     }
   }
 
   [[nodiscard]] const ObjectState& operator[](model::ObjectId id) const {
     assert(id < states_.size());
+    if (const model::PartOf* made_of = directed(id)) direct(id, *made_of);
     return states_[id];
   }
   /// The drive does not have it: it is neither silent about it, nor does it have it in another width.
@@ -85,6 +91,7 @@ class ObjectStore {
     if (first) whole(id, [this](ObjectState& s) { s.exchange = last_change_; });
   }
   void acknowledged(model::ObjectId id, std::int64_t number, Instant sent_at) {
+    if (const model::PartOf* made_of = directed(id)) return acknowledged(made_of->whole, std::abs(number), sent_at);
     each(id, [&](ObjectState& s) {
       s = {.number = number,
            .known = true,
@@ -114,6 +121,7 @@ class ObjectStore {
   void unlike(model::ObjectId id) { replace(id, {.refused = true, .unlike = true}); }
   /// A write of it may or may not have happened.
   void invalidate(model::ObjectId id) {
+    if (const model::PartOf* made_of = directed(id)) return invalidate(made_of->whole);
     whole(id, [](ObjectState& s) {
       s.cached = s.unverified = false;
       s.unsure = true;
@@ -136,6 +144,7 @@ class ObjectStore {
   [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
   /// What it was last may be true, but nothing confirms it any more: good only when it is read again.
   void outdate(model::ObjectId id) {
+    if (const model::PartOf* made_of = directed(id)) return outdate(made_of->whole);
     whole(id, [](ObjectState& s) { s.sent_at = kLongAgo; });
   }
   void forget(model::ObjectId id) { replace(id, {}); }
@@ -144,7 +153,10 @@ class ObjectStore {
     periods_[id] = period;
     for (const Part& part : parts_[id]) periods_[part.id] = period;
   }
-  [[nodiscard]] Duration period(model::ObjectId id) const { return periods_[id]; }
+  [[nodiscard]] Duration period(model::ObjectId id) const {
+    const model::PartOf* made_of = directed(id);
+    return periods_[made_of == nullptr ? id : made_of->whole];
+  }
   /// Bring-up begins: nothing is known but what is the gateway's own.
   void forget_all() {
     for (ObjectState& s : states_)
@@ -163,6 +175,34 @@ class ObjectStore {
       return def.number(static_cast<std::uint32_t>(whole) >> def.part.from);
     }
   };
+  struct Directed {
+    model::ObjectId id = model::kNoObject;
+    model::PartOf made_of;
+  };
+  /// Null: it is no directed object.
+  [[nodiscard]] const model::PartOf* directed(model::ObjectId id) const {
+    const auto found = std::ranges::find(directed_, id, &Directed::id);
+    return found == directed_.end() ? nullptr : &found->made_of;
+  }
+  /// Out of what its two objects hold now. 0 has no direction; what says neither leaves it as it was.
+  void direct(model::ObjectId id, const model::PartOf& made_of) const {
+    const ObjectState& way = states_[made_of.sign];
+    const bool was_negative = states_[id].number < 0;
+    ObjectState out = states_[made_of.whole];
+    out.refused = out.refused || way.refused;
+    if (out.number != 0) {
+      if (way.number == made_of.negative || (way.number != made_of.positive && was_negative)) out.number = -out.number;
+      out.known = out.known && way.known;
+      out.cached = out.cached && way.cached;
+      out.unsure = out.unsure || way.unsure;
+      out.out_of_sight = out.out_of_sight || way.out_of_sight;
+      if (way.exchange < out.exchange) {
+        out.exchange = way.exchange;
+        out.sent_at = way.sent_at;
+      }
+    }
+    states_[id] = out;
+  }
   template <typename Change>
   void each(model::ObjectId id, Change change) {
     change(at(id));
@@ -187,11 +227,12 @@ class ObjectStore {
     const auto& aliases = aliases_[other];
     return id == other || std::ranges::find(aliases, id) != aliases.end();
   }
-  std::vector<ObjectState> states_;
+  mutable std::vector<ObjectState> states_;  ///< that of a directed object is made whenever somebody looks
   std::vector<Duration> periods_;
   std::vector<std::vector<model::ObjectId>> aliases_;
   std::vector<std::vector<Part>> parts_;  ///< of each whole
   std::vector<model::ObjectId> wholes_;   ///< of each part
+  std::vector<Directed> directed_{};
   std::uint64_t exchange_ = 0;
   std::uint64_t last_change_ = 0;  ///< the newest exchange that was no mere read
   std::uint64_t invalidations_ = 0;

@@ -51,6 +51,8 @@ struct Eds {
   std::vector<EdsFault> remarks;  ///< oddities, in the order of the file
   std::size_t remarks_in_all = 0;
 
+  /// Of more than kMaxEdsRemarks only the number is kept.
+  void remark(std::size_t line, std::string message);
   /// Null: there is none.
   [[nodiscard]] const EdsObject* find(ObjectAddress address) const;
   /// Whether it has any sub-index of it.
@@ -59,10 +61,11 @@ struct Eds {
 
 [[nodiscard]] Eds parse_eds(std::string_view text);
 
-/// Bytes of a whole number of this type, and whether it has a sign; none: no whole number of 1, 2 or 4 bytes.
+/// Bytes of a number of this type, and whether it has a sign; none: no whole number of 1, 2 or 4 bytes, and no REAL32.
 struct EdsWidth {
   std::uint8_t size = 0;
   bool is_signed = false;
+  bool is_real = false;
 };
 [[nodiscard]] std::optional<EdsWidth> width_of(EdsType type);
 /// "UNSIGNED16"; "type 0x0040" of what CiA 301 does not name.

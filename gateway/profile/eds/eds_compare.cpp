@@ -19,7 +19,7 @@ std::string section_of(ObjectAddress address) {
   return address.sub == 0 ? index : fmt::format("{}sub{:X}", index, address.sub);
 }
 
-std::string type_text(const DataType& type) { return fmt::format("{}{}", type.is_signed ? "i" : "u", 8 * type.size); }
+std::string type_text(const Place& place) { return model::type_name(place.size, place.is_signed, place.is_real); }
 
 std::string limit_text(const std::optional<std::int64_t>& limit) { return limit ? std::to_string(*limit) : "none"; }
 
@@ -32,41 +32,40 @@ class Comparison {
     const auto protocol = profile_.protocols.find(kCanopen);
     if (protocol != profile_.protocols.end()) {
       compare_tpdos(protocol->second.canopen);
-      compare_loss(protocol->second);
+      if (const LossSpec& loss = protocol->second.loss; loss.by == LossSpec::By::life_guarding)
+        compare_value(loss.object, loss.value, "/protocols/canopen/loss/value");
     }
     for (const JsonNode& write : profile_.section("setup").elements()) compare_setup(write);
     return std::move(out_);
   }
 
  private:
-  [[nodiscard]] const EdsObject* find(ObjectAddress address) const { return eds_.find(address); }
-  [[nodiscard]] bool has_index(std::uint16_t index) const { return eds_.has_index(index); }
   void say(std::string pointer, std::string section, std::string message) {
     out_.push_back({std::move(pointer), std::move(section), std::move(message)});
   }
 
   void compare(const Object& object) {
     const Place* place = object.place(kCanopen);
-    if (place == nullptr || object.part) return;
+    if (place == nullptr || object.is_part()) return;
     const std::string at = pointer_to(pointer_to(object.pointer, "at"), kCanopen);
-    const EdsObject* known = find(place->address);
+    const EdsObject* known = eds_.find(place->address);
     if (known == nullptr)
       return say(at, section_of(place->address),
-                 has_index(place->address.index) ? "the EDS has this index, but not this sub-index"
-                                                 : "the EDS has no such object");
+                 eds_.has_index(place->address.index) ? "the EDS has this index, but not this sub-index"
+                                                      : "the EDS has no such object");
     if (!known->unclear.empty()) return say(at, known->section, known->unclear);
-    compare_type(object, place->type.value_or(object.type), *known);
+    compare_type(object, *place, *known);
     compare_access(object, *known);
-    if (object.range) compare_range(pointer_to(object.pointer, "range"), *object.range, *known);
+    if (object.printed.min != INT64_MIN) compare_range(pointer_to(object.pointer, "range"), object.printed, *known);
   }
 
-  void compare_type(const Object& object, const DataType& type, const EdsObject& known) {
+  void compare_type(const Object& object, const Place& place, const EdsObject& known) {
     const std::string at = pointer_to(object.pointer, "type");
     if (known.type == 0) return say(at, known.section, "has no DataType in the EDS");
     const auto width = width_of(known.type);
-    const bool fits = width && (object.any_width ? width->size <= type.size : width->size == type.size);
-    if (!fits || width->is_signed != type.is_signed)
-      say(at, known.section, fmt::format("is {} here, {} in the EDS", type_text(type), eds_type_name(known.type)));
+    const bool fits = width && (object.any_width ? width->size <= place.size : width->size == place.size);
+    if (!fits || width->is_signed != place.is_signed || width->is_real != place.is_real)
+      say(at, known.section, fmt::format("is {} here, {} in the EDS", type_text(place), eds_type_name(known.type)));
   }
 
   void compare_access(const Object& object, const EdsObject& known) {
@@ -87,8 +86,8 @@ class Comparison {
 
   void compare_value(const std::string& name, std::int64_t raw, const std::string& at) {
     const Object* object = profile_.find(name, 0);
-    const Place* place = object == nullptr || object->part ? nullptr : object->place(kCanopen);
-    const EdsObject* known = place == nullptr ? nullptr : find(place->address);
+    const Place* place = object == nullptr || object->is_part() ? nullptr : object->place(kCanopen);
+    const EdsObject* known = place == nullptr ? nullptr : eds_.find(place->address);
     if (known == nullptr) return;  // told with the object, or not on canopen
     if ((known->low && raw < *known->low) || (known->high && raw > *known->high))
       say(at, known->section,
@@ -102,11 +101,6 @@ class Comparison {
         compare_value(write.text("write"), *raw, write.pointer("value"));
   }
 
-  void compare_loss(const ProtocolSpec& protocol) {
-    if (protocol.loss.by == LossSpec::By::life_guarding)
-      compare_value(protocol.loss.object, protocol.loss.value, "/protocols/canopen/loss/value");
-  }
-
   void compare_tpdos(const model::CanopenProperties& canopen) {
     for (std::size_t i = 0; i < canopen.tpdos.size(); ++i) {
       const model::TpdoProperties& tpdo = canopen.tpdos[i];
@@ -114,9 +108,9 @@ class Comparison {
       const auto parameters = static_cast<std::uint16_t>(kFirstTpdo + tpdo.number - 1);
       const auto mapping = static_cast<std::uint16_t>(kFirstMapping + tpdo.number - 1);
       for (const std::uint16_t index : {parameters, mapping})
-        if (!has_index(index)) say(at, section_of({index, 0}), "the EDS has no such TPDO");
+        if (!eds_.has_index(index)) say(at, section_of({index, 0}), "the EDS has no such TPDO");
       const auto needs = [&](std::uint8_t sub, const char* key) {
-        if (has_index(parameters) && find({parameters, sub}) == nullptr)
+        if (eds_.has_index(parameters) && eds_.find({parameters, sub}) == nullptr)
           say(pointer_to(at, key), section_of({parameters, sub}), "the EDS has no such sub-index");
       };
       if (tpdo.inhibit) needs(kInhibit, "inhibit_us");
@@ -128,7 +122,7 @@ class Comparison {
 
   void compare_mapped(const Object& object, const std::string& at) {
     const Place* place = object.place(kCanopen);
-    const EdsObject* known = place == nullptr ? nullptr : find(place->address);
+    const EdsObject* known = place == nullptr ? nullptr : eds_.find(place->address);
     if (known == nullptr) return;  // told with the object
     if (!known->mappable) return say(at, known->section, "is mapped here, PDOMapping is 0 in the EDS");
     if (known->access == "rww") say(at, known->section, "is mapped to a TPDO here, rww (RPDO only) in the EDS");

@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
+#include <boost/locale/encoding_utf.hpp>
 #include <charconv>
+
+#include "gateway/profile/json/json_schema.hpp"
 
 namespace axisgate::profile {
 namespace {
@@ -12,41 +16,20 @@ namespace {
 constexpr std::size_t kMaxLine = 4096;  // CiA 306 allows 255
 
 std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// A code unit of the first plane as UTF-8; no maker needs more in a name.
-void append(std::string& out, unsigned unit) {
-  constexpr unsigned kOneByte = 0x80, kTwoBytes = 0x800, kRest = 0x3F;
-  if (unit < kOneByte) {
-    out += static_cast<char>(unit);
-  } else if (unit < kTwoBytes) {
-    out += static_cast<char>(0xC0U | unit >> 6U);
-    out += static_cast<char>(kOneByte | (unit & kRest));
-  } else {
-    out += static_cast<char>(0xE0U | unit >> 12U);
-    out += static_cast<char>(kOneByte | (unit >> 6U & kRest));
-    out += static_cast<char>(kOneByte | (unit & kRest));
-  }
+  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
 }
 
 /// UTF-16 by its mark, or by the zero beside the first character; anything else is left as it is.
 std::optional<std::string> from_utf16(std::string_view text) {
-  if (text.size() < 2) return std::nullopt;
-  const bool marked = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
-  if (!marked && (text[0] == '\0') == (text[1] == '\0')) return std::nullopt;
-  const bool low_first = marked ? text[0] == '\xFF' : text[1] == '\0';
-  if (marked) text.remove_prefix(2);
-  std::string out;
+  if (!is_utf16(text)) return std::nullopt;
+  const bool low_first = text[0] == '\xFF' || text[1] == '\0';
+  std::u16string units;
   for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    const auto second = static_cast<unsigned char>(text[i + 1]);
-    append(out, low_first ? second << 8U | first : first << 8U | second);
+    const auto first = static_cast<unsigned char>(text[i]), second = static_cast<unsigned char>(text[i + 1]);
+    units += static_cast<char16_t>(low_first ? second << 8U | first : first << 8U | second);
   }
-  return out;
+  return boost::locale::conv::utf_to_utf<char>(units);
 }
 
 /// "0x6041" -> "6041": some write the index of a section as a number.
@@ -59,7 +42,7 @@ std::string_view without_prefix(std::string_view name) {
 /// Takes one line after the other.
 class Reader {
  public:
-  explicit Reader(EdsRemarks& remarks) : remarks_(remarks) {}
+  explicit Reader(Eds& out) : out_(out) {}
 
   void read(std::string_view text) {
     std::size_t line = 0;
@@ -77,18 +60,18 @@ class Reader {
  private:
   void take(std::string_view line, std::size_t number) {
     if (line.empty() || line.front() == ';' || line.front() == '#') return;
-    if (line.starts_with("//")) return remarks_.add(number, "\"" + eds_shown(line) + "\" is taken for a comment");
+    if (line.starts_with("//")) return out_.remark(number, "\"" + eds_shown(line) + "\" is taken for a comment");
     if (line.size() > kMaxLine) {
-      remarks_.add(number, fmt::format("is longer than {} characters: its beginning is taken", kMaxLine));
+      out_.remark(number, fmt::format("is longer than {} characters: its beginning is taken", kMaxLine));
       line = line.substr(0, kMaxLine);
     }
-    if (line.find('\0') != std::string_view::npos) return remarks_.add(number, "has bytes that are no text: left out");
+    if (line.find('\0') != std::string_view::npos) return out_.remark(number, "has bytes that are no text: left out");
     if (line.front() == '[') return open(line, number);
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos)
-      return remarks_.add(number, "\"" + eds_shown(line) + "\" is neither [section] nor key=value: left out");
+      return out_.remark(number, "\"" + eds_shown(line) + "\" is neither [section] nor key=value: left out");
     if (current_ == nullptr)
-      return remarks_.add(number, "\"" + eds_shown(line) + "\" stands before the first [section]: left out");
+      return out_.remark(number, "\"" + eds_shown(line) + "\" stands before the first [section]: left out");
     put(eds_lower(trimmed(line.substr(0, equals))), std::string(trimmed(line.substr(equals + 1))), number);
   }
 
@@ -100,42 +83,40 @@ class Reader {
     }
     EdsValue& known = at->second;
     if (eds_lower(eds_bare(text)) != eds_lower(eds_bare(known.text))) known.other = std::move(text);
-    remarks_.add(number, fmt::format("key {} is given twice in [{}]: that of line {} is taken", eds_shown(key),
-                                     eds_shown(current_->name), known.line));
+    out_.remark(number, fmt::format("key {} is given twice in [{}]: that of line {} is taken", eds_shown(key),
+                                    eds_shown(current_->name), known.line));
   }
 
   void open(std::string_view line, std::size_t number) {
     const std::size_t end = std::min(line.find(']'), line.size());
-    if (end == line.size()) remarks_.add(number, "\"" + eds_shown(line) + "\" is a section without its ]");
+    if (end == line.size()) out_.remark(number, "\"" + eds_shown(line) + "\" is a section without its ]");
     const std::string_view name = trimmed(line.substr(1, end - 1));
     const std::string lowered = eds_lower(name);
     const std::string key(without_prefix(lowered));
-    if (key != lowered) remarks_.add(number, fmt::format("[{}] is taken for [{}]", eds_shown(name), key));
+    if (key != lowered) out_.remark(number, fmt::format("[{}] is taken for [{}]", eds_shown(name), key));
     const auto [at, first] = sections.emplace(key, EdsSection{std::string(name), number, {}});
     if (!first)
-      remarks_.add(number, fmt::format("section [{}] is there already, in line {}: both are taken together",
-                                       eds_shown(name), at->second.line));
+      out_.remark(number, fmt::format("section [{}] is there already, in line {}: both are taken together",
+                                      eds_shown(name), at->second.line));
     current_ = &at->second;
   }
 
-  EdsRemarks& remarks_;
+  Eds& out_;
   EdsSection* current_ = nullptr;
 };
 
 }  // namespace
 
-void EdsRemarks::add(std::size_t line, std::string message) {
-  ++out_.remarks_in_all;
-  if (out_.remarks.size() < kMaxEdsRemarks) out_.remarks.push_back({line, std::move(message)});
+void Eds::remark(std::size_t line, std::string message) {
+  ++remarks_in_all;
+  if (remarks.size() < kMaxEdsRemarks) remarks.push_back({line, std::move(message)});
 }
 
-void EdsRemarks::sort() { std::ranges::stable_sort(out_.remarks, {}, &EdsFault::line); }
-
-EdsSections eds_sections(std::string_view text, EdsRemarks& remarks) {
-  Reader reader(remarks);
+EdsSections eds_sections(std::string_view text, Eds& out) {
+  Reader reader(out);
   const std::optional<std::string> converted = from_utf16(text);
   if (converted) {
-    remarks.add(0, "is UTF-16");
+    out.remark(0, "is UTF-16");
     text = *converted;
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -183,12 +164,7 @@ std::string eds_shown(std::string_view text) {
   return text.size() > kMost ? out + "..." : out;
 }
 
-std::string eds_lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
+std::string eds_lower(std::string_view text) { return boost::to_lower_copy(std::string(text)); }
 
 std::string_view eds_bare(std::string_view text) {
   text = text.substr(0, text.find(';'));

@@ -16,18 +16,6 @@
 
 namespace axisgate::profile {
 
-/// Remarks of one file. Of more than kMaxEdsRemarks only the number is kept.
-class EdsRemarks {
- public:
-  explicit EdsRemarks(Eds& out) : out_(out) {}
-  void add(std::size_t line, std::string message);
-  /// In the order of the file.
-  void sort();
-
- private:
-  Eds& out_;
-};
-
 struct EdsValue {
   std::string text;
   std::size_t line = 0;
@@ -42,7 +30,7 @@ struct EdsSection {
 
 /// By name in small letters; "[0x6041]" is "6041".
 using EdsSections = std::map<std::string, EdsSection>;
-[[nodiscard]] EdsSections eds_sections(std::string_view text, EdsRemarks& remarks);
+[[nodiscard]] EdsSections eds_sections(std::string_view text, Eds& out);
 
 /// A number as people write them: "47", "0x2F", "057", "-1", and with a remark "2Fh", "\"47\"", "08", "+47".
 struct EdsNumber {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading JSON files (declared in json_schema.hpp): bounded, with comments, and strict about what JSON leaves open.
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -59,16 +60,9 @@ class Watch {
 };
 
 std::string at_line(std::string_view text, std::size_t byte) {
-  std::size_t line = 1;
-  std::size_t column = 1;
-  for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
-    ++column;
-    if (text[i] == '\n') {
-      ++line;
-      column = 1;
-    }
-  }
-  return "line " + std::to_string(line) + ", column " + std::to_string(column) + ": ";
+  const std::string_view before = text.substr(0, byte == 0 ? 0 : byte - 1);
+  const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;
+  return "line " + std::to_string(std::ranges::count(before, '\n') + 1) + ", column " + std::to_string(column) + ": ";
 }
 
 /// nlohmann's "[json.exception...] parse error at line 1, column 2: syntax error while parsing value - what" -> "what".
@@ -85,13 +79,21 @@ void make_whole(json& value) {
   if (std::abs(number) <= kExact && std::trunc(number) == number) value = static_cast<std::int64_t>(number);
 }
 
-/// As editors on Windows may save it: with a byte order mark, or each character of the first two beside a zero.
+/// Not much more than `most` bytes.
+std::string beginning_of(std::istream& stream, std::size_t most) {
+  std::string text;
+  std::array<char, 4096> piece{};
+  while (text.size() < most && (stream.read(piece.data(), piece.size()) || stream.gcount() > 0))
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+}  // namespace
+
 bool is_utf16(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
   return text.size() >= 2 && (text[0] == '\0') != (text[1] == '\0');
 }
-
-}  // namespace
 
 std::variant<json, SchemaFault> parse_json(std::string_view text) {
   if (is_utf16(text))
@@ -119,12 +121,7 @@ FileRead read_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return {path};
   std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  constexpr std::size_t kPiece = 4096;
-  std::array<char, kPiece> piece{};
-  while (text.size() < kMaxWatchedBytes && (stream.read(piece.data(), piece.size()) || stream.gcount() > 0))
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-  return {path, std::move(text)};
+  return {path, beginning_of(stream, kMaxWatchedBytes)};
 }
 
 std::variant<json, SchemaFault> load_json(const std::filesystem::path& path, std::vector<FileRead>& read, Pipes pipes) {
@@ -138,19 +135,11 @@ std::variant<json, SchemaFault> load_json(const std::filesystem::path& path, std
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) return SchemaFault{"", "cannot be read: " + std::string(std::strerror(errno))};
-  std::string text(kMaxJsonFileBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text = beginning_of(file, kMaxJsonFileBytes + 1);
   if (file.bad()) return SchemaFault{"", "cannot be read"};
-  text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > kMaxJsonFileBytes) return SchemaFault{"", "is larger than 1 MiB"};
   read.push_back({path.string(), std::move(text)});
   return parse_json(*read.back().text);
-}
-
-std::optional<Rational> rational_of(const json& value) {
-  if (value.is_string()) return Rational::parse(value.get_ref<const std::string&>());
-  // dump() prints the shortest text that gives this number again: the digits that were written.
-  return value.is_number() ? Rational::parse(value.dump()) : std::nullopt;
 }
 
 }  // namespace axisgate::profile

@@ -81,20 +81,18 @@ std::optional<std::string> JsonNode::string(std::string_view key) const {
   return node.is_string() ? std::optional(node.text()) : std::nullopt;
 }
 
+std::vector<JsonNode> JsonNode::one_or_each() const { return is_array() ? items() : std::vector<JsonNode>{*this}; }
+
 std::vector<std::string> JsonNode::names(std::string_view key) const {
-  const JsonNode node = (*this)[key];
-  if (node.is_string()) return {node.text()};
   std::vector<std::string> out;
-  for (const JsonNode& name : node.elements())
+  for (const JsonNode& name : (*this)[key].one_or_each())
     if (name.is_string()) out.push_back(name.text());
   return out;
 }
 
 std::vector<std::int64_t> JsonNode::wholes(std::string_view key) const {
-  const JsonNode node = (*this)[key];
-  if (const std::optional<std::int64_t> one = node.whole()) return {*one};
   std::vector<std::int64_t> out;
-  for (const JsonNode& entry : node.elements())
+  for (const JsonNode& entry : (*this)[key].one_or_each())
     if (const std::optional<std::int64_t> one = entry.whole()) out.push_back(*one);
   return out;
 }
@@ -111,7 +109,11 @@ Duration JsonNode::milliseconds(std::string_view key, Duration otherwise) const 
   return value && *value >= 0 && *value <= kLongest ? std::chrono::milliseconds(*value) : otherwise;
 }
 
-std::optional<Rational> JsonNode::rational() const { return rational_of(*json_); }
+std::optional<Rational> JsonNode::rational() const {
+  if (const std::optional<std::int64_t> number = whole()) return Rational(*number);
+  // dump() prints the shortest text that gives this number again: the digits that were written.
+  return is_string() || json_->is_number() ? Rational::parse(is_string() ? text() : dump()) : std::nullopt;
+}
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
   const bool negative = text.starts_with('-');

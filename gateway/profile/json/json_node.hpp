@@ -60,10 +60,11 @@ class JsonNode {
   [[nodiscard]] std::vector<std::int64_t> wholes(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key, bool otherwise) const;
   [[nodiscard]] Duration milliseconds(std::string_view key, Duration otherwise) const;
-  /// A number, a decimal string or a fraction, exactly as it is written.
+  /// A whole number, a decimal as it was written (27.5), a decimal string ("1.414"), or a fraction ("10000/60").
   [[nodiscard]] std::optional<Rational> rational() const;
 
  private:
+  [[nodiscard]] std::vector<JsonNode> one_or_each() const;
   const nlohmann::json* json_;
   std::string pointer_;
 };

@@ -3,8 +3,8 @@
 #include "gateway/profile/json/json_schema.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <regex>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -25,11 +25,8 @@ const json* find(const json& object, const char* key) {
 
 /// Follows "$ref": "#/definitions/..." to what it names.
 const json* dereferenced(const json& root, const json* node) {
-  while (node != nullptr && node->is_object()) {
-    const json* reference = find(*node, "$ref");
-    if (reference == nullptr) break;
-    node = &root.at(json::json_pointer(reference->get_ref<const std::string&>().substr(1)));
-  }
+  while (node != nullptr && node->is_object() && node->contains("$ref"))
+    node = &root.at(json::json_pointer(node->at("$ref").get_ref<const std::string&>().substr(1)));
   return node;
 }
 
@@ -56,32 +53,7 @@ const json* schema_at(const json& root, const std::vector<std::string>& keys) {
   return node;
 }
 
-/// The keys of valijson's "<root>[a][0]".
-std::vector<std::string> keys_of(const std::vector<std::string>& context) {
-  std::vector<std::string> keys;
-  for (std::size_t i = 1; i < context.size(); ++i) keys.push_back(context[i].substr(1, context[i].size() - 2));
-  return keys;
-}
-
-std::string pointer_of(const std::vector<std::string>& keys) {
-  return std::accumulate(keys.begin(), keys.end(), std::string(),
-                         [](const std::string& pointer, const std::string& key) { return pointer_to(pointer, key); });
-}
-
-std::string listed(const json& values) {
-  std::string out;
-  for (const json& value : values)
-    out += (out.empty() ? "" : ", ") + (value.is_string() ? value.get<std::string>() : value.dump());
-  return out;
-}
-
-std::vector<std::string> texts(const json* values) {
-  std::vector<std::string> out;
-  if (values != nullptr)
-    for (const json& value : *values)
-      if (value.is_string()) out.push_back(value);
-  return out;
-}
+std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
 /// A parent only repeats that something below it is wrong: the fault below has its own line.
 bool is_echo(std::string_view description) {
@@ -91,59 +63,65 @@ bool is_echo(std::string_view description) {
 
 class Wording {
  public:
-  Wording(const json& document, const json& schema, std::vector<SchemaFault>& out)
-      : document_(document), schema_(schema), out_(out) {}
+  Wording(const json& document, const json& schema) : document_(document), schema_(schema) {}
 
-  void add(const std::vector<std::string>& keys, const std::string& description) {
-    const std::string pointer = pointer_of(keys);
-    const json& value = document_.at(json::json_pointer(pointer));
+  /// `context`: valijson's "<root>", "[a]", "[0]".
+  void add(const std::vector<std::string>& context, const std::string& description) {
+    std::vector<std::string> keys;
+    json::json_pointer place;
+    for (std::size_t i = 1; i < context.size(); ++i) {
+      keys.push_back(context[i].substr(1, context[i].size() - 2));
+      place /= keys.back();
+    }
     const json* rule = schema_at(schema_, keys);
-    const json none = json::object();
-    const json& said = rule == nullptr ? none : *rule;
+    put(place.to_string(), document_.at(place), rule == nullptr ? json::object() : *rule, description);
+  }
+
+  std::vector<SchemaFault> faults;
+
+ private:
+  void put(const std::string& pointer, const json& value, const json& said, const std::string& description) {
+    const json* const expects = find(said, "expects");
     if (description.starts_with("Object contains a property")) return unknown_keys(pointer, value, said);
     if (description.starts_with("Missing required property"))
       return put(pointer, "key \"" + quoted(description) + "\" is missing");
     if (description.starts_with("Missing dependency"))
       return put(pointer, "key \"" + quoted(description) + "\" is missing beside this");
-    if (description.find("enum") != std::string::npos && said.contains("enum")) {
-      const std::string given = value.is_string() ? value.get<std::string>() : std::string();
-      return put(pointer, value.dump() + " is none of: " + listed(said["enum"]) +
-                              did_you_mean(given, texts(find(said, "enum"))));
-    }
-    if (description.find("'type'") != std::string::npos && said.contains("type")) {
-      const json types = said["type"].is_array() ? said["type"] : json::array({said["type"]});
-      return put(pointer, "must be " + types_text(types) + ", is " + std::string(value.type_name()));
-    }
-    if (description.find("'pattern'") != std::string::npos && said.contains("expects"))
-      return put(pointer, value.dump() + " is not " + said["expects"].get<std::string>());
-    if (const json* expects = find(said, "expects"))
-      return put(pointer, description + " (expected: " + expects->get<std::string>() + ")");
-    if (bound(pointer, value, said)) return;
-    put(pointer, description);
-  }
-
- private:
-  /// Sizes and limits, in fewer words than the validator's.
-  bool bound(const std::string& pointer, const json& value, const json& said) {
-    const auto beyond = [&](const char* key, const json& measure, bool least, const char* noun) {
-      const json* limit = find(said, key);
-      if (limit == nullptr || !limit->is_number() || (least ? measure >= *limit : measure <= *limit)) return false;
-      put(pointer, std::string(value.is_number() ? "must be " : "must have ") + (least ? "at least " : "at most ") +
-                       limit->dump() + noun + ", " + (value.is_number() ? "is " : "has ") + measure.dump());
-      return true;
-    };
-    if (value.is_number()) return beyond("minimum", value, true, "") || beyond("maximum", value, false, "");
-    const std::size_t size = value.is_string() ? value.get_ref<const std::string&>().size() : value.size();
-    if (value.is_array())
-      return beyond("minItems", size, true, " entries") || beyond("maxItems", size, false, " entries");
-    if (value.is_object())
-      return beyond("minProperties", size, true, " keys") || beyond("maxProperties", size, false, " keys");
-    return beyond("minLength", size, true, " characters") || beyond("maxLength", size, false, " characters");
+    if (description.find("enum") != std::string::npos && said.contains("enum"))
+      return put(pointer, value.dump() + " is none of: " + choice(value, said["enum"]));
+    if (description.find("'type'") != std::string::npos && said.contains("type"))
+      return put(pointer, "must be " + types_text(said["type"]) + ", is " + std::string(value.type_name()));
+    if (description.find("'pattern'") != std::string::npos && expects != nullptr)
+      return put(pointer, value.dump() + " is not " + text_of(*expects));
+    if (expects != nullptr) return put(pointer, description + " (expected: " + text_of(*expects) + ")");
+    if (!bound(pointer, value, said)) put(pointer, description);
   }
 
   void put(const std::string& pointer, std::string message) {
     const SchemaFault fault{pointer, std::move(message)};
-    if (std::ranges::find(out_, fault) == out_.end()) out_.push_back(fault);
+    if (std::ranges::find(faults, fault) == faults.end()) faults.push_back(fault);
+  }
+
+  /// Sizes and limits, in fewer words than the validator's.
+  bool bound(const std::string& pointer, const json& value, const json& said) {
+    struct Keys {
+      const char *least, *most, *noun;
+    };
+    const Keys keys = value.is_number()   ? Keys{"minimum", "maximum", ""}
+                      : value.is_array()  ? Keys{"minItems", "maxItems", " entries"}
+                      : value.is_object() ? Keys{"minProperties", "maxProperties", " keys"}
+                                          : Keys{"minLength", "maxLength", " characters"};
+    const json measure = value.is_number()   ? value
+                         : value.is_string() ? json(value.get_ref<const std::string&>().size())
+                                             : json(value.size());
+    for (const bool least : {true, false}) {
+      const json* limit = find(said, least ? keys.least : keys.most);
+      if (limit == nullptr || (least ? measure >= *limit : measure <= *limit)) continue;
+      put(pointer, std::string(value.is_number() ? "must be " : "must have ") + (least ? "at least " : "at most ") +
+                       limit->dump() + keys.noun + ", " + (value.is_number() ? "is " : "has ") + measure.dump());
+      return true;
+    }
+    return false;
   }
 
   /// The validator names the first unknown key only; a person wants them all.
@@ -151,16 +129,27 @@ class Wording {
     std::vector<std::string> known;
     if (const json* properties = find(said, "properties"))
       for (const auto& [key, schema] : properties->items()) known.push_back(key);
-    for (const auto& [key, unused] : value.items())
-      if (property(said, key) == nullptr) put(pointer_to(pointer, key), unknown_key(key, said, known));
+    const json renamed = said.value("renamed", json::object());
+    for (const auto& [key, unused] : value.items()) {
+      if (property(said, key) != nullptr) continue;
+      const std::string at = pointer_to(pointer, key), name = "\"" + key + "\"";
+      if (renamed.contains(key))
+        put(at, "key " + name + " is called " + renamed[key].dump() + " now");
+      else if (said.contains("expects"))
+        put(at, name + " is not " + text_of(said["expects"]));
+      else
+        put(at, "unknown key " + name + did_you_mean(key, known));
+    }
   }
 
-  static std::string unknown_key(const std::string& key, const json& said, const std::vector<std::string>& known) {
-    const json* renamed = find(said, "renamed");
-    if (renamed != nullptr && renamed->contains(key))
-      return "key \"" + key + "\" is called \"" + renamed->at(key).get<std::string>() + "\" now";
-    if (said.contains("expects")) return "\"" + key + "\" is not " + said["expects"].get<std::string>();
-    return "unknown key \"" + key + "\"" + did_you_mean(key, known);
+  static std::string choice(const json& value, const json& choices) {
+    std::string out;
+    std::vector<std::string> words;
+    for (const json& each : choices) {
+      out += (out.empty() ? "" : ", ") + text_of(each);
+      if (each.is_string()) words.push_back(each);
+    }
+    return out + did_you_mean(value.is_string() ? text_of(value) : "", words);
   }
 
   static std::string quoted(const std::string& description) {
@@ -168,47 +157,54 @@ class Wording {
     return description.substr(first + 1, description.rfind('\'') - first - 1);
   }
 
-  static std::string types_text(const json& types) {
+  static std::string types_text(const json& said) {
+    const json types = said.is_array() ? said : json::array({said});
     std::string out;
     for (std::size_t i = 0; i < types.size(); ++i)
-      out += (i == 0 ? "" : i + 1 == types.size() ? " or " : ", ") + types[i].get<std::string>();
+      out += (i == 0 ? "" : i + 1 == types.size() ? " or " : ", ") + text_of(types[i]);
     return out;
   }
 
   const json& document_;
   const json& schema_;
-  std::vector<SchemaFault>& out_;
 };
 
 }  // namespace
 
-std::vector<SchemaFault> validate(const json& document, const json& schema) {
+struct JsonSchema::Rules {
+  json text;
   valijson::Schema rules;
-  valijson::SchemaParser parser;
-  parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(schema), rules);
-  valijson::Validator validator(valijson::Validator::kStrongTypes);
+  valijson::Validator validator{valijson::Validator::kStrongTypes};  // keeps its regular expressions
+};
+
+JsonSchema::JsonSchema(std::string_view text) : rules_(std::make_shared<Rules>()) {
+  rules_->text = json::parse(text);
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(rules_->text), rules_->rules);
+}
+
+std::vector<SchemaFault> JsonSchema::faults_in(const json& document) const {
   valijson::ValidationResults results;
   const valijson::adapters::NlohmannJsonAdapter target(document);
-  if (validator.validate(rules, target, &results)) return {};
+  if (rules_->validator.validate(rules_->rules, target, &results)) return {};
 
-  std::vector<SchemaFault> faults;
-  std::vector<std::pair<std::vector<std::string>, std::string>> echoes;
-  Wording wording(document, schema, faults);
+  std::vector<valijson::ValidationResults::Error> echoes;
+  Wording wording(document, rules_->text);
   for (const valijson::ValidationResults::Error& error : results) {
     if (is_echo(error.description))
-      echoes.emplace_back(keys_of(error.context), error.description);
+      echoes.push_back(error);
     else
-      wording.add(keys_of(error.context), error.description);
+      wording.add(error.context, error.description);
   }
   // Never pass in silence what the validator has refused.
-  if (faults.empty())
-    for (const auto& [keys, description] : echoes) wording.add(keys, description);
-  if (faults.empty()) faults.push_back({"", "does not fit the schema"});
-  return faults;
+  if (wording.faults.empty())
+    for (const auto& error : echoes) wording.add(error.context, error.description);
+  if (wording.faults.empty()) wording.faults.push_back({"", "does not fit the schema"});
+  return wording.faults;
 }
 
 std::string pointer_to(std::string_view parent, std::string_view key) {
-  return (json::json_pointer(std::string(parent)) / std::string(key)).to_string();
+  const std::string tilde = boost::replace_all_copy(std::string(key), "~", "~0");
+  return std::string(parent) + "/" + boost::replace_all_copy(tilde, "/", "~1");
 }
 
 std::string pointer_to(std::string_view parent, std::size_t index) { return pointer_to(parent, std::to_string(index)); }

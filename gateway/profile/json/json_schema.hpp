@@ -7,14 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
-
-#include "gateway/core/rational.hpp"
 
 namespace axisgate::profile {
 
@@ -54,17 +53,25 @@ enum class Pipes : std::uint8_t { refused, allowed };
 /// The same for text already in memory (an embedded schema, a test).
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> parse_json(std::string_view text);
 
-/// `schema` (draft-7) is part of the program: a bad one throws. Beside draft-7 a schema may say, at a "pattern",
-/// "expects": in words what the text must be (at "patternProperties": what a key must be); and beside "properties",
-/// "renamed": the names that keys had before, each with that of today. An old name is a fault that tells the new one.
-[[nodiscard]] std::vector<SchemaFault> validate(const nlohmann::json& document, const nlohmann::json& schema);
+/// As editors on Windows may save it: with a byte order mark, or each character of the first two beside a zero.
+[[nodiscard]] bool is_utf16(std::string_view text);
+
+/// A JSON Schema (draft-7), made ready once; it is part of the program: a bad one throws. Beside draft-7 it may say, at
+/// a "pattern", "expects": in words what the text must be (at "patternProperties": what a key must be); and beside
+/// "properties", "renamed": the names that keys had before, each with that of today. An old name is a fault that tells
+/// the new one. Not for several threads at once.
+class JsonSchema {
+ public:
+  explicit JsonSchema(std::string_view text);
+  [[nodiscard]] std::vector<SchemaFault> faults_in(const nlohmann::json& document) const;
+
+ private:
+  struct Rules;
+  std::shared_ptr<Rules> rules_;
+};
 
 /// One more step of a JSON pointer, escaped.
 [[nodiscard]] std::string pointer_to(std::string_view parent, std::string_view key);
 [[nodiscard]] std::string pointer_to(std::string_view parent, std::size_t index);
-
-/// An exact number: a JSON integer, a decimal as it was written (27.5), a decimal string ("1.414"), or a
-/// fraction ("10000/60").
-[[nodiscard]] std::optional<Rational> rational_of(const nlohmann::json& value);
 
 }  // namespace axisgate::profile

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "gateway/model/object_def.hpp"
 #include "gateway/profile/json/json_node.hpp"
 #include "gateway/profile/make/take_out.hpp"
 
@@ -15,8 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-std::string type_text(const EdsWidth& width) {
-  return fmt::format("{}{}", width.is_signed ? 'i' : 'u', 8 * width.size);
+std::string type_text(const EdsWidth& width) { return model::type_name(width.size, width.is_signed, width.is_real); }
+
+bool is_real(const EdsObject& object) {
+  const std::optional<EdsWidth> width = width_of(object.type);
+  return width && width->is_real;
 }
 
 struct Numbers {
@@ -65,7 +69,8 @@ class Fitting {
       : document_(document), name_(std::move(name)), known_(known) {}
 
   bool fit() {
-    if (!why_not_usable(known_).empty()) return false;
+    const bool real = known_.unclear.empty() && is_real(known_) && takes_real();
+    if (!real && !why_not_usable(known_).empty()) return false;
     const EdsWidth width = *width_of(known_.type);
     const bool any_width = object().value("any_width", json(false)) == json(true);
     if (!any_width && object()["type"] != type_text(width)) object()["type"] = type_text(width);
@@ -76,6 +81,12 @@ class Fitting {
 
  private:
   json& object() { return document_["objects"][name_]; }
+
+  /// It is an amount, and no position: what is a code, or compared, is a whole number.
+  bool takes_real() {
+    const json unit = document_.value("units", json::object()).value(object().value("unit", ""), json::object());
+    return unit.contains("base") && unit["base"] != "rev";
+  }
 
   bool fit_access() {
     const std::string access = object().value("access", "ro");
@@ -107,6 +118,10 @@ class Fitting {
 
   /// The narrower of both; of codes the numbers themselves say what they are.
   void fit_range(const EdsWidth& width) {
+    if (width.is_real) {
+      object().erase("range");
+      return;
+    }
     const bool is_amount = object().contains("unit") && object().value("access", "ro") != "ro";
     if (!is_amount && !object().contains("range")) return;
     const Numbers all = numbers_of(width);
@@ -174,7 +189,7 @@ std::optional<ObjectAddress> canopen_address(const json& object) {
 std::string why_not_usable(const EdsObject& object) {
   if (!object.unclear.empty()) return object.unclear;
   if (object.type == 0) return "has no DataType in the EDS";
-  if (!width_of(object.type)) return "is " + eds_type_name(object.type) + " in the EDS";
+  if (!width_of(object.type) || is_real(object)) return "is " + eds_type_name(object.type) + " in the EDS";
   return {};
 }
 

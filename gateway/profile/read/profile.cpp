@@ -4,12 +4,6 @@
 #include <algorithm>
 
 namespace axisgate::profile {
-Range Object::numbers() const {
-  const std::int64_t span = std::int64_t{1} << (part ? part->count : 8 * type.size);
-  Range out = type.is_signed ? Range{-span / 2, span / 2 - 1} : Range{0, span - 1};
-  if (range) out = {std::max(out.min, range->min), std::min(out.max, range->max)};
-  return out;
-}
 
 const Place* Object::place(std::string_view protocol) const {
   const auto at = places.find(protocol);
@@ -95,11 +89,6 @@ const Object* Profile::find(std::string_view object, AxisSlot motor) const {
     if (candidate.name == object) of_drive = &candidate;
   }
   return of_drive;
-}
-
-const Object* Profile::named(std::string_view object) const {
-  const auto at = std::ranges::find(objects, object, &Object::name);
-  return at == objects.end() ? nullptr : &*at;
 }
 
 const QuantitySpec* Profile::find(Quantity quantity) const {

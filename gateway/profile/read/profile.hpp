@@ -28,55 +28,28 @@ struct Constant {
   std::string text;
 };
 
-struct DataType {
-  std::uint8_t size = 2;
-  bool is_signed = false;
-  friend bool operator==(const DataType&, const DataType&) = default;
-};
-
-/// Where an object is found on one protocol.
-struct Place {
-  ObjectAddress address;
-  bool write_only = false;   ///< keya-*: a command, which no query tells
-  bool composed = false;     ///< keya-rs232, keya-rs485: a field of the one control frame
-  bool turns_on = false;     ///< of those: says that its motor is to be on
+/// An object as one protocol has it. keya-*: `composed` is a field of the one control frame; a command is not readable.
+struct Place : model::ObjectDef {
   bool unsolicited = false;  ///< keya-can: in a frame that the drive sends by itself; nothing asks for it
-  std::optional<DataType> type{};
-  bool derived = false;  ///< follows from a rule of the manual's table, not printed
+  bool derived = false;      ///< follows from a rule of the manual's table, not printed
 };
 
-/// Bits of another object that stand for an object of their own.
-struct PartSpec {
-  std::string of;
-  std::uint8_t from = 0, count = 0;
-};
-
-struct Object {
-  std::string name;
-  AxisSlot slot = kNoAxis;  ///< position of its motor in Profile::axes
-  DataType type;
-  bool readable = true;
-  bool writable = false;
-  bool trigger = false;
-  bool any_width = false;  ///< canopen: read as wide as the drive answers
-  bool mailbox_reads_only = false;
-  model::Nvm nvm = model::Nvm::no;
+/// An object of the drive, whatever the protocol; `slot` is the position of its motor in Profile::axes.
+struct Object : model::ObjectDef {
   std::string unit;
-  std::optional<Range> range;  ///< raw
   std::string alias_of;
-  std::optional<PartSpec> part{};
+  std::string whole;  ///< what it is a part of, in Profile::objects at `part.whole`
+  std::string sign;   ///< the object that says its direction, at `part.sign`; empty: none
   std::map<std::string, Place, std::less<>> places;  ///< by protocol; of a part the whole's
   std::string pointer;
-  [[nodiscard]] Range numbers() const;  ///< of its type and range together
-  [[nodiscard]] DataType type_at(const Place& place) const { return place.type.value_or(type); }
+  /// Of its type and what is printed together.
+  [[nodiscard]] Range numbers() const { return model::intersection(range(), printed); }
   /// Null: the protocol does not have it.
   [[nodiscard]] const Place* place(std::string_view protocol) const;
 };
 
-struct BitsSpec {
-  std::string object;
-  std::uint8_t from = 0, count = 1, to = 0;
-  bool inverted = false;
+struct BitsSpec : model::BitField {
+  std::string name;  ///< of their object
 };
 
 struct QuantitySpec {
@@ -149,7 +122,6 @@ struct ProtocolSpec {
   Duration worst_reply{};
   Duration timeout{};
   LossSpec loss;
-  Duration heartbeat{};              ///< keya-can only: the drive sends its own so often; 0: not stated
   model::RtuProperties rtu;          ///< modbus-rtu only
   model::CanopenProperties canopen;  ///< canopen only; its maps hold positions in Profile::objects
   [[nodiscard]] bool stops_by_itself() const { return loss.by != LossSpec::By::nothing; }
@@ -162,8 +134,9 @@ struct StateSpec {
   std::map<std::int16_t, std::int64_t> homing_methods;  ///< CiA 402 method -> what the drive calls it
 };
 
-/// Whose drive it is: what 1018h sub 1 to 3 (vendor, product, revision) may say; an empty list: anything.
+/// Whose drive it is: what 1018h sub 1 to 3 may say; an empty list: anything.
 struct IdentitySpec {
+  static constexpr std::array<std::string_view, 3> kNames{"vendor", "product", "revision"};
   std::array<std::vector<std::uint32_t>, 3> numbers;
   /// The first of them that `found` says otherwise; none: nothing is said against it.
   [[nodiscard]] std::optional<std::size_t> other_in(const std::array<std::optional<std::uint32_t>, 4>& found) const;
@@ -199,10 +172,9 @@ struct Profile {
 
   /// As it is written, for what only a configured drive decides.
   [[nodiscard]] JsonNode section(std::string_view key) const;
-  /// The object that `name` means for this motor: its own ("A.speed") before the drive's ("speed").
+  /// The object that `name` means for this motor: its own ("A.speed") before the drive's ("speed"). Of kNoAxis: the one
+  /// of exactly this name.
   [[nodiscard]] const Object* find(std::string_view object, AxisSlot motor) const;
-  /// The object of exactly this name.
-  [[nodiscard]] const Object* named(std::string_view object) const;
   [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
   /// Those of `asks` that nobody has answered, with these constants of a configuration.
   [[nodiscard]] std::vector<Ask> open_asks(const std::map<std::string, Rational>& configured) const;

@@ -18,8 +18,52 @@ constexpr std::array kCommands{Command::enable,        Command::disable,      Co
 
 constexpr std::int16_t kHomingMode = 6;
 
+/// The holding register that a step writes; null: it writes none.
+const Place* holding(const Reading& reading, const JsonNode& step, AxisSlot slot) {
+  const Object* object = reading.profile.find(step.text("write"), slot);
+  const Place* place = object == nullptr || object->is_part() ? nullptr : object->place("modbus-rtu");
+  const bool holds = place != nullptr && place->address.sub == static_cast<std::uint8_t>(ModbusTable::holding);
+  return holds ? place : nullptr;
+}
+
+/// Writes that go in one request: each begins where the one before ends, for as many registers as a request may have.
+void check_joined(Reading& reading, const std::vector<JsonNode>& steps, std::size_t i) {
+  const auto is_joined = [&](std::size_t k) { return k > 0 && steps[k].flag("joined", false); };
+  const std::string at = steps[i].pointer("joined"), name = steps[i].text("write");
+  if (!steps[i].flag("joined", false)) return;
+  if (i == 0 || steps[i - 1].text("write").empty())
+    return reading.fault(at, "goes in one request with a write: the step before must be one");
+  const JsonNode rtu = reading.document["protocols"]["modbus-rtu"];
+  if (!rtu) return reading.fault(at, "only modbus-rtu writes several objects in one request");
+  for (const WriteValue& value : values_in(reading.profile, steps[i])) {
+    const auto* quantity = std::get_if<Quantity>(&value);
+    if (quantity != nullptr && (*quantity == Quantity::position_actual || !is_of(reading, name, *quantity)))
+      reading.fault(steps[i].pointer("value"),
+                    "a joined write gives its object a number, or what was asked of the quantity that is written by "
+                    "this object");
+  }
+  const std::int64_t most = rtu.whole("max_registers", 2);
+  for (std::size_t axis = 0; axis < reading.profile.axes.size(); ++axis) {
+    const auto slot = static_cast<AxisSlot>(axis);
+    if (reading.profile.find(name, slot) == nullptr) continue;  // told already
+    const Place* mine = holding(reading, steps[i], slot);
+    const Place* before = holding(reading, steps[i - 1], slot);
+    if (mine == nullptr || before == nullptr || mine->address.index != before->address.index + registers_of(*before))
+      reading.fault(at, "object \"{}\" must stand in the holding register behind \"{}\"",
+                    reading.profile.find(name, slot)->name, steps[i - 1].text("write"));
+    std::int64_t registers = mine == nullptr ? 0 : registers_of(*mine);
+    for (std::size_t k = i; is_joined(k); --k)
+      if (const Place* place = holding(reading, steps[k - 1], slot)) registers += registers_of(*place);
+    if (registers > most)
+      reading.fault(at, "makes a request of {} registers, and max_registers is {}", registers, most);
+  }
+}
+
 void check_steps(Reading& reading, const JsonNode& owner) {
-  for (const JsonNode& node : owner["steps"].elements()) {
+  const std::vector<JsonNode> steps = owner["steps"].elements();
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const JsonNode& node = steps[i];
+    check_joined(reading, steps, i);
     if (node.has("write") + node.has("wait") + node.has("require") != 1) {
       reading.fault(node.pointer(), "a step is exactly one of \"write\", \"wait\" and \"require\"");
     } else if (node.has("write")) {
@@ -28,11 +72,12 @@ void check_steps(Reading& reading, const JsonNode& owner) {
         if (node.has(key))
           reading.fault(node.pointer(key),
                         "belongs to \"wait\" and \"require\": a write puts its whole \"value\" there");
-      reading.write(node, true);
+      reading.write(node, true, true);
     } else {
       const bool waits = node.has("wait");
       reading.condition(node, waits ? "wait" : "require");
       if (waits && node.whole("ms", 0) <= 0) reading.fault(node.pointer(), "a wait needs a limit: \"ms\"");
+      if (node.has("joined")) reading.fault(node.pointer("joined"), "belongs to \"write\"");
       if (!waits && node.has("ms"))
         reading.fault(node.pointer("ms"), "a require is judged once and has no limit; to wait, use \"wait\"");
     }
@@ -69,34 +114,14 @@ void check_set_position_value(Reading& reading, const CommandEntry& command, con
   });
 }
 
-/// Answered as done, the motor would go on.
-void check_stops(Reading& reading, const CommandEntry& command) {
-  if (!is_stop(command.command)) return;
-  const auto check = [&](const JsonNode& owner) {
-    const auto writes = [](const JsonNode& step) { return step.has("write"); };
-    if (std::ranges::none_of(owner["steps"].elements(), writes))
-      reading.fault(owner.pointer("steps"), "write nothing, so they stop nothing");
-    else
-      check_stops_by_word(reading, command, owner);
-  };
-  if (command.node.has("steps")) check(command.node);
-  for (const JsonNode& variant : command.node["variants"].elements()) check(variant);
-}
-
-/// On a CiA 402 drive the gateway carries it out in homing mode, by method 35: in a mode that moves, a controlword
-/// would start the target that the drive still holds.
-void check_starts_nothing(Reading& reading, const CommandEntry& command) {
+/// On a CiA 402 drive the gateway carries out set_position in homing mode, by method 35.
+void check_homing_mode(Reading& reading, const CommandEntry& command) {
   if (command.command != Command::set_position || reading.profile.state.is_virtual) return;
   bool commands = false;
   each_write(command, [&](const JsonNode& step) {
     commands = commands || is_of(reading, step.text("write"), Quantity::controlword);
-    if (is_of(reading, step.text("write"), Quantity::mode))
-      reading.fault(step.pointer("write"),
-                    "set_position must not change the mode: an old target could start in it. Leave this step out: "
-                    "the gateway goes to homing mode (6) before the first step, and back after the last");
   });
-  if (!commands) return;
-  if (!reading.profile.modes.contains(kHomingMode) || reading.profile.find(Quantity::homing_method) == nullptr)
+  if (commands && !(reading.profile.modes.contains(kHomingMode) && reading.profile.find(Quantity::homing_method)))
     reading.fault(command.pointer(),
                   "its steps write the controlword, which in a mode that moves starts an old target, so they are "
                   "carried out in homing mode by method 35: add mode \"6\" to /modes and quantity \"homing_method\", "
@@ -132,11 +157,9 @@ void read_command(Reading& reading, const JsonNode& node) {
   check_variants(reading, node);
   check_steps(reading, node);
   each_write(out, [&](const JsonNode& step) { check_set_position_value(reading, out, step); });
-  check_starts_nothing(reading, out);
+  check_homing_mode(reading, out);
   check_stops(reading, out);
-  check_never_enables(reading, out);
-  check_enable_starts_nothing(reading, out);
-  check_turns_nothing(reading, out);
+  check_writes(reading, out);
   if (!node.has("steps") && !node.has("otherwise") && !node.has("as"))
     reading.fault(node.pointer(), "says nothing for modes without a variant: give \"steps\"{}",
                   out.command == Command::halt ? " or \"otherwise\": \"quick_stop\"" : "");

@@ -6,21 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "gateway/profile/read/profile_layers.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
-#include "gateway/profile/read/profile_schema.hpp"
 
 namespace axisgate::profile {
 
 using nlohmann::json;
 
 namespace {
-
-/// Parsed once; a schema that does not parse is a mistake of the build.
-const json& profile_schema() {
-  static const json schema = json::parse(profile_schema_text());
-  return schema;
-}
 
 void read_head(Reading& reading, const std::string& file) {
   Profile& out = reading.profile;
@@ -40,16 +32,15 @@ void read_head(Reading& reading, const std::string& file) {
 }
 
 void read_identity(Reading& reading) {
-  constexpr std::array<std::string_view, 3> kNumbers{"vendor", "product", "revision"};
   const JsonNode node = reading.document["identity"];
   if (!node.is_object()) return;
   if (!reading.profile.protocols.contains("canopen"))
     reading.fault(node.pointer(), "belongs to canopen, which this drive does not speak: no other protocol has 1018h");
   IdentitySpec& out = reading.profile.identity.emplace();
-  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
-    for (const std::int64_t number : node.wholes(kNumbers[i])) {
+  for (std::size_t i = 0; i < IdentitySpec::kNames.size(); ++i) {
+    for (const std::int64_t number : node.wholes(IdentitySpec::kNames[i])) {
       if (number < 0 || number > UINT32_MAX)
-        reading.fault(node.pointer(kNumbers[i]), "{} is no number of 32 bits", number);
+        reading.fault(node.pointer(IdentitySpec::kNames[i]), "{} is no number of 32 bits", number);
       out.numbers[i].push_back(static_cast<std::uint32_t>(number));
     }
   }
@@ -78,23 +69,18 @@ Written written_at(const WrittenPlaces& places, const std::string& pointer) {
 }
 
 LoadedProfile load_profile(const std::string& path, const std::vector<std::string>& folders) {
-  LayeredProfile layered = layered_profile(path, folders);
-  LoadedProfile out;
-  out.file = path;
-  out.files = std::move(layered.files);
-  out.read = std::move(layered.read);
-  out.written = std::move(layered.written);
-  out.faults = std::move(layered.faults);
+  LoadedProfile out{layered_profile(path, folders), path, {}, {}, {}};
   if (!out.faults.empty()) return out;
-  const json& document = *layered.document;
+  const json& document = *out.document;
   out.text = document.dump();
   out.base_only = JsonNode(document, "").flag("base_only", false);
   if (out.base_only) {
     out.faults.push_back({path, "/base_only", "is no drive but a base: name or check a profile that extends it"});
     return out;
   }
-  out.profile.document = layered.document;
-  std::vector<SchemaFault> faults = validate(document, profile_schema());
+  out.profile.document = out.document;
+  static const JsonSchema kSchema(profile_schema_text());
+  std::vector<SchemaFault> faults = kSchema.faults_in(document);
   Reading reading(document, out.profile, faults);
   read_head(reading, path);
   read_constants(reading);
@@ -117,7 +103,6 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
   check_stops_start_nothing(reading);
   check_shared(reading);
   check_constant_rules(reading);
-  check_state_places(reading);
   for (SchemaFault& fault : faults) {
     Written written = written_at(out.written, fault.pointer);
     Fault told{std::move(written.file), std::move(written.pointer), std::move(fault.message)};
@@ -131,15 +116,12 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
 
 std::optional<std::string> find_profile(const std::string& name_or_path, const std::vector<std::string>& folders,
                                         std::vector<FileRead>* missed) {
-  const auto is_file = [](const std::filesystem::path& path) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path, error);
-  };
+  std::error_code error;
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".json"))
-    return is_file(name_or_path) ? std::optional(name_or_path) : std::nullopt;
+    return std::filesystem::is_regular_file(name_or_path, error) ? std::optional(name_or_path) : std::nullopt;
   for (const std::string& folder : folders) {
     const std::filesystem::path path = std::filesystem::path(folder) / (name_or_path + ".json");
-    if (is_file(path)) return path.string();
+    if (std::filesystem::is_regular_file(path, error)) return path.string();
     if (missed != nullptr) missed->push_back({path.string()});
   }
   return std::nullopt;

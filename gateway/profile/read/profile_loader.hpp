@@ -32,16 +32,32 @@ using WrittenPlaces = std::map<std::string, Written, std::less<>>;
 /// Where `pointer` was written; of what is not there, where it would belong.
 [[nodiscard]] Written written_at(const WrittenPlaces& places, const std::string& pointer);
 
-struct LoadedProfile {
-  std::string file;
-  std::vector<std::string> files;  ///< `file`, and those that it extends
-  std::vector<FileRead> read;      ///< of them, and of where one was looked for before it was found
-  Profile profile;
-  WrittenPlaces written;
-  bool base_only = false;     ///< no drive: only others extend it (and a fault says so)
-  std::string text;           ///< the whole JSON without spaces: whether two profiles say the same
-  std::vector<Fault> faults;  ///< empty: the profile is good, and only then may it be resolved
+/// How many files may stand behind one another by "extends", the first one not counted.
+inline constexpr std::size_t kMaxBases = 4;
+/// Entries of one "each".
+inline constexpr std::size_t kMaxEach = 32;
+
+/// The document of a profile, put together from its files: without "extends", "each_axis" and "each". Not judged yet.
+struct LayeredProfile {
+  std::shared_ptr<const nlohmann::json> document;  ///< null: nothing was read
+  WrittenPlaces written;                           ///< of every place in `document`
+  std::vector<std::string> files;                  ///< the profile's own file first; also where one could not be read
+  std::vector<FileRead> read;                      ///< of them, and of where a base was looked for before it was found
+  std::vector<Fault> faults;  ///< where there is one, the document lacks more than it is to blame for
 };
+/// `folders`: where a base is looked for that does not lie beside the file which extends it.
+[[nodiscard]] LayeredProfile layered_profile(const std::string& path, const std::vector<std::string>& folders);
+
+/// Its `faults` are empty: the profile is good, and only then may it be resolved.
+struct LoadedProfile : LayeredProfile {
+  std::string file;
+  Profile profile;
+  bool base_only = false;  ///< no drive: only others extend it (and a fault says so)
+  std::string text;        ///< the whole JSON without spaces: whether two profiles say the same
+};
+
+/// schemas/drive-profile.schema.json, word for word: it travels inside the program.
+[[nodiscard]] std::string_view profile_schema_text();
 
 /// Never throws for what the file says; a file that cannot be read is a fault as well. A profile that it extends lies
 /// beside it, or in the first of `folders` that has it.

@@ -20,6 +20,13 @@ namespace axisgate::profile {
 
 /// The last address of a Modbus register.
 inline constexpr std::int64_t kLastRegister = 0xFFFF;
+[[nodiscard]] inline std::int64_t registers_of(const Place& place) { return place.size > 2 ? 2 : 1; }
+
+/// What a motor follows.
+[[nodiscard]] constexpr bool is_target(Quantity quantity) {
+  using enum Quantity;
+  return quantity == target_position || quantity == target_velocity || quantity == target_torque;
+}
 
 class Reading {
  public:
@@ -35,8 +42,6 @@ class Reading {
   void fault(const std::string& pointer, fmt::format_string<First, More...> form, First&& first, More&&... more) {
     fault(pointer, fmt::format(form, std::forward<First>(first), std::forward<More>(more)...));
   }
-  /// The axis slots that a name without a prefix is looked up for.
-  [[nodiscard]] std::size_t axes() const { return profile.axes.size(); }
 
   // Each says what is wrong at `pointer`, unless what is named there is known. Returns whether it is.
   /// Of any axis.
@@ -50,15 +55,18 @@ class Reading {
   // Each says what is wrong at `pointer` with an object that is not so. Returns whether it is.
   /// `consequence`: what follows from it, behind "cannot be read".
   bool needs_readable(const Object& object, const std::string& pointer, std::string_view consequence = "");
+  /// A whole number: one of a speed, say, may be a fraction.
+  bool needs_whole(const Object& object, const std::string& pointer);
   bool needs_writable(const Object& object, const std::string& pointer);
   bool needs_address(const Object& object, std::string_view protocol, const std::string& pointer);
-  bool needs_number(const Object& object, std::int64_t number, const std::string& pointer);
+  /// `what`: what the number is, before it.
+  bool needs_number(const Object& object, std::int64_t number, const std::string& pointer, std::string_view what = "");
 
   /// Calls `check(object)` for what the name means on each axis (once, where all mean the same).
   template <class Check>
   void each_meaning(const std::string& name, Check&& check) const {
     const Object* last = nullptr;
-    for (std::size_t slot = 0; slot < axes(); ++slot) {
+    for (std::size_t slot = 0; slot < profile.axes.size(); ++slot) {
       const Object* object = profile.find(name, static_cast<AxisSlot>(slot));
       if (object != nullptr && object != last) check(*object);
       last = object;
@@ -75,10 +83,9 @@ class Reading {
     if (const QuantitySpec* spec = profile.find(quantity))
       for (const std::string& name : spec->objects) each_meaning(name, check);
   }
-  /// Judges what is written to an object: in a step, by setup or by a remedy.
-  void write(const JsonNode& node, bool by_command);
-  /// For what is written without a further look: not an amount in a unit that waits for the drive.
-  void value_known(const WriteValue& value, const Object& object, const std::string& pointer);
+  /// Judges what is written to an object: in a step, by setup or by a remedy. `at_once`: without a further look, so not
+  /// an amount in a unit that waits for the drive.
+  void write(const JsonNode& node, bool by_command, bool at_once);
   /// Judges a condition where there is one. `object`: the key of its object.
   void condition(const JsonNode& node, std::string_view object = "object");
   /// "3000 rpm"; nothing where the schema has reported its form. An unknown constant is a fault.
@@ -87,17 +94,14 @@ class Reading {
  private:
   /// Of each axis its own.
   void values(const JsonNode& node);
-  void value_fits(const WriteValue& value, const Object& object, const std::string& pointer);
+  void value_fits(const WriteValue& value, const Object& object, const std::string& pointer, bool at_once);
   void by_constant(const JsonNode& node, std::int64_t mask);
   std::vector<SchemaFault>& faults_;
   std::size_t from_schema_;
 };
 
-[[nodiscard]] inline Duration milliseconds(std::int64_t count) { return std::chrono::milliseconds(count); }
-/// One text for each axis, from {"A": ..., "B": ...}; a fault where the `what` of an axis is missing.
-[[nodiscard]] std::vector<std::string> text_for_each_axis(Reading& reading, const JsonNode& node,
-                                                          std::string_view what);
-[[nodiscard]] std::optional<DataType> type_named(std::string_view name);
+/// "u16"; another name is none, and leaves the object as it is.
+void take_type(model::ObjectDef& object, std::string_view name);
 [[nodiscard]] model::Nvm nvm_named(std::string_view name);
 /// The unit counts by a constant that is read from the drive: nothing can be converted by it before that.
 [[nodiscard]] bool waits_for_drive(const Profile& profile, const model::Unit& unit);
@@ -126,8 +130,6 @@ void read_commands(Reading& reading);
 void check_setup(Reading& reading);
 void check_checks(Reading& reading);
 void read_alarms(Reading& reading);
-/// Of section "protocols": what belongs to canopen alone.
-void read_canopen(Reading& reading, const JsonNode& node, ProtocolSpec& protocol);
 /// Of sections "protocols" and "objects": what belongs to Keya's own protocols alone.
 [[nodiscard]] bool is_keya(std::string_view protocol);
 /// `place` has what every protocol's places have; none where it is wrong.
@@ -138,20 +140,16 @@ void check_control_frame(Reading& reading, const std::string& protocol, const st
 void read_protocols(Reading& reading);
 void check_keepalive(Reading& reading);
 void check_constant_rules(Reading& reading);
-void check_state_places(Reading& reading);
 
 /// Two names of one object, as "alias_of" says.
 [[nodiscard]] bool are_aliases(const Object& a, const Object& b);
 /// `object` is, on any axis, one of those that the quantity comes from.
 [[nodiscard]] bool is_of(const Reading& reading, const std::string& object, Quantity quantity);
-/// A stop, a fault reset and a save must not enable, a halt must not go on.
-void check_never_enables(Reading& reading, const CommandEntry& command);
-/// An enable has no start in it, no mode and no target but to stay where it is.
-void check_enable_starts_nothing(Reading& reading, const CommandEntry& command);
-/// On a CiA 402 drive a quick_stop or disable takes a controlword for it: one of the steps under `owner` writes it.
-void check_stops_by_word(Reading& reading, const CommandEntry& command, const JsonNode& owner);
-/// What stops, clears or stores gives the motor no speed and no torque.
-void check_turns_nothing(Reading& reading, const CommandEntry& command);
+/// A stop, a fault reset and a save must neither enable nor turn the motor, a halt must not go on; an enable has no
+/// start in it, no mode and no target but to stay where it is.
+void check_writes(Reading& reading, const CommandEntry& command);
+/// What stops writes something, and on a CiA 402 drive a quick_stop or disable a controlword for it.
+void check_stops(Reading& reading, const CommandEntry& command);
 /// After all: neither setup nor a remedy enables the motor or gives it a mode or a target.
 void check_unsolicited_writes(Reading& reading);
 /// No command of a virtual axis that moves nothing may write what enables or moves it elsewhere.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sections "state" and "homing".
+// Sections "modes", "configured_mode", "keepalive", "state" and "homing": what decides a motor's mode, what is repeated
+// in each, and how its state is known.
 #include <algorithm>
 #include <array>
 
@@ -9,6 +10,59 @@
 namespace axisgate::profile {
 
 namespace {
+
+/// More numbers than a parameter that chooses a mode can have.
+constexpr std::int64_t kMostModes = 256;
+/// A command that is late by one whole period must not stop the motor.
+constexpr int kPeriodsBeforeLoss = 2;
+
+/// Every number that the configuration may give must be a mode.
+void check_mode_constant(Reading& reading, const std::string& name, const std::string& pointer) {
+  const Constant* found = reading.constant_named(name, pointer);
+  if (found == nullptr) return;
+  const std::string at = pointer_to("/constants", name);
+  if (found->from_drive || (!found->standard && !found->required))
+    return reading.fault(at, "decides the mode: the configuration gives it, so it needs \"default\" or \"required\"");
+  const auto needs_range = [&] {
+    reading.fault(at, "decides the mode: it needs a \"range\" of what the drive calls its modes");
+  };
+  if (!found->min || !found->max) return needs_range();
+  const std::optional<std::int64_t> low = found->min->scale(1), high = found->max->scale(1);
+  if (!low || !high || *high - *low > kMostModes) return needs_range();
+  const auto& modes = reading.profile.modes;
+  for (std::int64_t raw = *low; raw <= *high; ++raw)
+    if (std::ranges::none_of(modes, [&](const auto& mode) { return mode.second == raw; }))
+      reading.fault(at, "may be {}, and the drive calls no mode under /modes so", raw);
+}
+
+/// Repeated is the set-point of the mode, and no other object: nothing that would start something anew.
+void check_resent(Reading& reading, const JsonNode& keepalive, const JsonNode& resent) {
+  const std::string at = resent.pointer(), name = resent.text();
+  const auto mode = static_cast<std::int16_t>(whole_number(resent.key()).value_or(0));
+  if (!reading.names_mode(mode, at) || !reading.names_object(name, at)) return;
+  const std::optional<Quantity> setpoint = setpoint_of(mode);
+  const QuantitySpec* quantity = setpoint ? reading.profile.find(*setpoint) : nullptr;
+  if (quantity == nullptr || std::ranges::find(quantity->objects, name) == quantity->objects.end())
+    return reading.fault(at, "must be the set-point of mode {}{}", mode,
+                         setpoint ? fmt::format(", an object of {}", row(*setpoint).name) : ", which has none");
+  reading.each_meaning(name, [&](const Object& object) {
+    for (const auto& [protocol, unused] : reading.profile.protocols)
+      if (is_on(keepalive, protocol)) reading.needs_address(object, protocol, at);
+  });
+}
+
+void check_watchdogs(Reading& reading, const JsonNode& keepalive) {
+  for (const auto& [name, protocol] : reading.profile.protocols) {
+    if (!is_on(keepalive, name)) continue;
+    if (protocol.loss.by != LossSpec::By::command_watchdog)
+      reading.fault("/keepalive/on", "nothing on {} needs it: its \"loss\" is no command_watchdog", name);
+    else if (kPeriodsBeforeLoss * keepalive.milliseconds("every_ms", {}) > protocol.loss.after)
+      reading.fault("/keepalive/every_ms",
+                    "is more than half of what {0} allows, /protocols/{0}/loss/after_ms: one late command would stop "
+                    "the motor",
+                    name);
+  }
+}
 
 void check_cia402(Reading& reading, const JsonNode& node) {
   for (const Quantity quantity : {Quantity::statusword, Quantity::controlword, Quantity::mode})
@@ -35,8 +89,13 @@ void read_makers_facts(Reading& reading, const JsonNode& node, model::Cia402Prop
 void check_virtual(Reading& reading, const JsonNode& node) {
   for (const char* key : {"follow_bits", "velocity_modes"})
     if (node.has(key)) reading.fault(node.pointer(key), "belongs to a cia402 drive: this one has no controlword");
-  for (const char* key : {"enabled", "fault", "moving"})
+  for (const char* key : {"enabled", "fault", "moving"}) {
     if (!node.has(key)) reading.fault("/state", "a virtual drive needs condition \"{}\"", key);
+    reading.each_meaning(node[key].text("object"), [&](const Object& object) {
+      for (const auto& [protocol, unused] : reading.profile.protocols)
+        reading.needs_address(object, protocol, node.pointer(key));
+    });
+  }
   for (const Quantity quantity : {Quantity::statusword, Quantity::mode_display, Quantity::controlword, Quantity::mode})
     if (reading.profile.find(quantity) != nullptr)
       reading.fault(pointer_to("/quantities", row(quantity).name),
@@ -47,7 +106,7 @@ void check_virtual(Reading& reading, const JsonNode& node) {
   if (node.flag("gate_only", false) && ends == "torque_off")
     reading.fault("/state/quick_stop_ends", "excludes \"gate_only\": a bus that cannot take the torque away");
   constexpr std::size_t kEmulatedPerAxis = 3;
-  if (reading.profile.objects.size() + kEmulatedPerAxis * reading.axes() > model::kMaxObjects)
+  if (reading.profile.objects.size() + kEmulatedPerAxis * reading.profile.axes.size() > model::kMaxObjects)
     reading.fault("/objects", "too many: the gateway makes {} more for each axis, and all together may be {}",
                   kEmulatedPerAxis, model::kMaxObjects);
 }
@@ -98,12 +157,62 @@ void check_homed_at(Reading& reading, const JsonNode& node) {
   if (!reading.profile.state.is_virtual)
     return reading.fault(node.pointer(), "belongs to a virtual drive: the statusword of this one tells it");
   const QuantitySpec* position = reading.profile.find(Quantity::position_actual);
-  const auto& objects = position == nullptr ? std::vector<std::string>() : position->objects;
-  if (std::ranges::find(objects, node.text("object")) == objects.end())
+  if (position == nullptr || std::ranges::find(position->objects, node.text("object")) == position->objects.end())
     reading.fault(node.pointer(), "must look at the object of position_actual");
 }
 
 }  // namespace
+
+std::optional<Quantity> setpoint_of(std::int16_t number) {
+  using enum Quantity;
+  static constexpr auto kSetpoints = std::to_array<std::pair<std::int16_t, Quantity>>({{1, target_position},
+                                                                                       {3, target_velocity},
+                                                                                       {4, target_torque},
+                                                                                       {6, homing_method},
+                                                                                       {7, target_position},
+                                                                                       {8, target_position},
+                                                                                       {9, target_velocity},
+                                                                                       {10, target_torque}});
+  const auto* const row = std::ranges::find(kSetpoints, number, [](const auto& each) { return each.first; });
+  return row == kSetpoints.end() ? std::nullopt : std::optional(row->second);
+}
+
+void read_modes(Reading& reading) {
+  for (const JsonNode& node : reading.document["modes"].members())
+    if (const auto mode = whole_number(node.key()))
+      reading.profile.modes.emplace(static_cast<std::int16_t>(*mode), node.whole().value_or(0));
+}
+
+void check_configured_mode(Reading& reading) {
+  const JsonNode section = reading.document["configured_mode"];
+  if (!section.is_object()) return;
+  if (const JsonNode state = reading.document["state"]; state && state.text("model") != "virtual")
+    reading.fault(section.pointer(), "belongs to a virtual drive: the mode object of this one tells its mode");
+  const JsonNode constant = section["constant"];
+  for (const std::string& axis : reading.profile.axes) {
+    if (const std::string name = of_axis(constant, axis).text(); !name.empty())
+      check_mode_constant(reading, name, constant.pointer());
+    else
+      reading.fault(constant.pointer(), "a constant for axis \"{}\" is missing", axis);
+  }
+  for (const std::string& protocol : section.names("fixed_on"))
+    reading.names_protocol(protocol, section.pointer("fixed_on"));
+  for (const std::int64_t mode : section.wholes("only")) reading.names_mode(mode, section.pointer("only"));
+}
+
+void check_keepalive(Reading& reading) {
+  const JsonNode section = reading.document["keepalive"];
+  if (!section.is_object()) {
+    for (const auto& [name, protocol] : reading.profile.protocols)
+      if (protocol.loss.by == LossSpec::By::command_watchdog)
+        reading.fault(pointer_to(pointer_to("/protocols", name), "loss"),
+                      "a command watchdog would stop every motion: say in \"keepalive\" what is repeated");
+    return;
+  }
+  for (const std::string& protocol : section.names("on")) reading.names_protocol(protocol, "/keepalive/on");
+  for (const JsonNode& resent : section["resend"].members()) check_resent(reading, section, resent);
+  check_watchdogs(reading, section);
+}
 
 void read_state(Reading& reading) {
   const JsonNode section = reading.document["state"];
@@ -143,16 +252,6 @@ void read_homing(Reading& reading) {
       if (section.has(key))
         reading.fault(section.pointer(key), "is not looked at on a virtual drive: say \"homed_at\"");
   check_homed_at(reading, section["homed_at"]);
-}
-
-/// What a virtual state is made from must be there on every protocol.
-void check_state_places(Reading& reading) {
-  if (!reading.profile.state.is_virtual) return;
-  for (const char* key : {"enabled", "fault", "moving"})
-    reading.each_meaning(reading.document["state"][key].text("object"), [&](const Object& object) {
-      for (const auto& [protocol, unused] : reading.profile.protocols)
-        reading.needs_address(object, protocol, pointer_to("/state", key));
-    });
 }
 
 }  // namespace axisgate::profile

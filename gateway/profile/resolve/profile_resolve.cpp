@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "gateway/core/nearest.hpp"
+#include "gateway/model/real32.hpp"
 #include "gateway/profile/json/json_schema.hpp"
 #include "gateway/profile/read/profile_reading.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
@@ -23,13 +24,12 @@ void check_protocol(Resolving& r) {
 
 /// Who says that the drive is one which its profile is not for has taken the wrong profile, or the wrong number.
 void check_identity(Resolving& r) {
-  constexpr std::array<std::string_view, 3> kNumbers{"vendor", "product", "revision"};
   if (!r.profile.identity) return;
   const std::optional<std::size_t> other = r.profile.identity->other_in(r.input.identity);
   if (!other) return;
   std::vector<std::string> own;
   for (const std::uint32_t number : r.profile.identity->numbers[*other]) own.push_back(fmt::format("{:#010x}", number));
-  r.fault(fmt::format("/identity/{}", kNumbers[*other]),
+  r.fault(fmt::format("/identity/{}", IdentitySpec::kNames[*other]),
           fmt::format("is {:#010x}, but profile \"{}\" is for {}: for this drive take its own maker's profile, "
                       "\"cia402-generic\", or one of yours that extends this with its own \"identity\"",
                       *r.input.identity[*other], r.profile.name, listed(own)));
@@ -56,13 +56,12 @@ std::optional<model::Condition> Resolving::condition(const JsonNode& node, AxisS
   model::Condition out = condition_in(node);
   out.object = id(node.text(object), slot);
   if (out.object == model::kNoObject) return std::nullopt;
-  for (const char* key : {"equals", "not_equals"}) {
-    if (!node[key].is_object()) continue;
-    const auto value = constants.find(node[key].text("constant"));
-    const auto number = value == constants.end() ? std::nullopt : value->second.scale(node[key].whole("times", 1));
-    if (!number) return std::nullopt;
-    out.values = {*number};
-  }
+  const JsonNode compared = node[node.has("equals") ? "equals" : "not_equals"];
+  if (!compared.is_object()) return out;
+  const auto value = constants.find(compared.text("constant"));
+  const auto number = value == constants.end() ? std::nullopt : value->second.scale(compared.whole("times", 1));
+  if (!number) return std::nullopt;
+  out.values = {*number};
   return out;
 }
 
@@ -70,19 +69,25 @@ WriteValue Resolving::value_of(const JsonNode& write, AxisSlot slot) const {
   return value_in(of_axis(write["value"], profile.axes[motor(slot)]));
 }
 
+std::optional<Rational> Resolving::factor_of(const model::Amount& amount, const model::Unit& unit) const {
+  const Rational per_rev(1);  // units per revolution cancel out here: any number will do
+  const std::optional<Rational> registers = model::in_registers(amount, constants, per_rev);
+  if (!registers) return std::nullopt;
+  const Rational out = *registers * base_per_register(unit.base, per_rev);
+  if (!unit.inverse) return out;
+  return out.numerator() == 0 ? std::nullopt : std::optional(out.inverse());
+}
+
 std::optional<std::int64_t> Resolving::raw(const WriteValue& value, std::string_view name, AxisSlot slot) const {
   if (const auto* literal = std::get_if<std::int64_t>(&value)) return *literal;
   const Object* object = profile.find(name, motor(slot));
-  if (object == nullptr || !std::holds_alternative<model::Amount>(value)) return std::nullopt;
-  // Units per revolution cancel out here: any number will do.
-  const Rational per_rev(1);
+  const auto* amount = std::get_if<model::Amount>(&value);
+  if (object == nullptr || amount == nullptr) return std::nullopt;
   const model::Unit& unit = profile.units.find(object->unit)->second;
-  const std::optional<Rational> registers = model::in_registers(std::get<model::Amount>(value), constants, per_rev);
-  const std::optional<Rational> scale = model::raw_per_base(unit, constants);
-  if (!registers || !scale) return std::nullopt;
-  const Rational amount = *registers * base_per_register(unit.base, per_rev);
-  if (unit.inverse) return amount.numerator() == 0 ? std::nullopt : (*scale / amount).scale(1);
-  return (amount * *scale).scale(1);
+  const std::optional<Rational> factor = factor_of(*amount, unit), scale = model::raw_per_base(unit, constants);
+  if (!factor || !scale) return std::nullopt;
+  const Rational raw = *factor * *scale;
+  return object->is_real ? model::real_of(raw.numerator(), raw.denominator()) : raw.scale(1);
 }
 
 std::optional<model::ObjectWrite> Resolving::write(const JsonNode& node, AxisSlot slot) const {
@@ -103,13 +108,10 @@ std::optional<model::FactoryWrite> Resolving::factory_write(const JsonNode& node
     out.amount = Rational(*literal);
   } else {
     const model::Unit& unit = profile.units.find(object->unit)->second;
-    const Rational per_rev(1);  // units per revolution cancel out here: any number will do
-    const auto registers = model::in_registers(std::get<model::Amount>(value), constants, per_rev);
+    const std::optional<Rational> factor = factor_of(std::get<model::Amount>(value), unit);
     const std::optional<model::ScaleRecipe> scale = recipe(unit);
-    if (!registers || !scale) return std::nullopt;
-    out.amount = *registers * base_per_register(unit.base, per_rev);
-    if (unit.inverse && out.amount.numerator() == 0) return std::nullopt;
-    if (unit.inverse) out.amount = out.amount.inverse();
+    if (!factor || !scale) return std::nullopt;
+    out.amount = *factor;
     out.recipe = *scale;
   }
   out.recipe.raw = object->numbers();
@@ -118,7 +120,6 @@ std::optional<model::FactoryWrite> Resolving::factory_write(const JsonNode& node
 
 std::optional<model::DriveConstant::Operand> Resolving::operand(const JsonNode& node) const {
   using Operand = model::DriveConstant::Operand;
-  if (const std::optional<std::int64_t> number = node.whole()) return Operand{model::kNoObject, Rational(*number)};
   if (const std::optional<Rational> number = node.rational()) return Operand{model::kNoObject, *number};
   const std::string name = node.text();
   if (const auto known = constants.find(name); known != constants.end())
@@ -171,32 +172,22 @@ std::optional<std::size_t> Resolving::drive_constant(const std::string& name) {
   return model.constants.size() - 1;
 }
 
-std::optional<model::ScaleRecipe> Resolving::recipe(const model::Unit& unit) {
+std::optional<model::ScaleRecipe> Resolving::recipe(const model::Unit& unit, std::vector<std::string>* missing) {
   model::ScaleRecipe out;
-  const auto add = [&](const model::Factor& factor, bool divides) {
-    if (const std::optional<Rational> value = model::value_of(factor, constants)) {
-      if (divides && value->numerator() == 0) return false;
-      out.fixed = divides ? out.fixed / *value : out.fixed * *value;
-      return true;
+  bool known = true;
+  for (const bool divides : {false, true})
+    for (const model::Factor& factor : divides ? unit.div : unit.mul) {
+      if (const std::optional<Rational> value = model::value_of(factor, constants)) {
+        if (divides && value->numerator() == 0) return std::nullopt;
+        out.fixed = divides ? out.fixed / *value : out.fixed * *value;
+      } else if (const auto at = drive_constant(std::get<std::string>(factor))) {
+        (divides ? out.div : out.mul).push_back(*at);
+      } else {  // a constant nobody gave
+        known = false;
+        if (missing != nullptr) missing->push_back(std::get<std::string>(factor));
+      }
     }
-    const std::optional<std::size_t> at = drive_constant(std::get<std::string>(factor));
-    if (at) (divides ? out.div : out.mul).push_back(*at);
-    return at.has_value();
-  };
-  const auto all = [&](const std::vector<model::Factor>& factors, bool divides) {
-    return std::ranges::all_of(factors, [&](const model::Factor& factor) { return add(factor, divides); });
-  };
-  if (!all(unit.mul, false) || !all(unit.div, true)) return std::nullopt;  // a constant nobody gave
-  return out;
-}
-
-std::vector<std::string> Resolving::missing(const model::Unit& unit) {
-  std::vector<std::string> out;
-  for (const auto* factors : {&unit.mul, &unit.div})
-    for (const model::Factor& factor : *factors)
-      if (const auto* name = std::get_if<std::string>(&factor))
-        if (!model::value_of(factor, constants) && !drive_constant(*name)) out.push_back(*name);
-  return out;
+  return known ? std::optional(std::move(out)) : std::nullopt;
 }
 
 void resolve_constants(Resolving& r) {
@@ -217,15 +208,11 @@ void resolve_constants(Resolving& r) {
       continue;
     }
     const Constant& constant = at->second;
-    const auto decimal = [](const Rational& number) {
-      std::string text = std::to_string(number.to_double());
-      text.erase(text.find_last_not_of('0') + 1);
-      return text.ends_with('.') ? text.substr(0, text.size() - 1) : text;
-    };
     if (constant.min && constant.max &&
         (value.to_double() < constant.min->to_double() || value.to_double() > constant.max->to_double()))
-      r.fault(pointer, fmt::format("must be {} to {}, is {}{}", decimal(*constant.min), decimal(*constant.max),
-                                   decimal(value), why_no_more(r.profile, name, constant)));
+      r.fault(pointer,
+              fmt::format("must be {:.10g} to {:.10g}, is {:.10g}{}", constant.min->to_double(),
+                          constant.max->to_double(), value.to_double(), why_no_more(r.profile, name, constant)));
     r.constants.insert_or_assign(name, value);
   }
 }
@@ -234,36 +221,27 @@ void resolve_objects(Resolving& r) {
   for (const Object& object : r.profile.objects) {
     const Place* place = object.place(r.input.protocol);
     if (place == nullptr) continue;
-    const Place& at = *place;
     const AxisSlot axis = object.slot == kNoAxis ? kNoAxis : r.axis_of(object.slot);
     // Of a motor that is no axis only what travels with the others' is needed.
-    if (object.slot != kNoAxis && axis == kNoAxis && !at.composed) continue;
-    const DataType type = object.type_at(at);
-    model::ObjectDef def;
-    def.name = object.name;
+    if (object.slot != kNoAxis && axis == kNoAxis && !place->composed) continue;
+    model::ObjectDef def = *place;
     def.slot = axis;
-    def.address = at.address;
-    def.size = type.size;
-    def.is_signed = type.is_signed;
     def.printed = object.numbers();
-    def.readable = object.readable && !at.write_only && !at.unsolicited;
-    def.writable = object.writable;
-    def.composed = at.composed;
-    def.turns_on = at.turns_on;
-    def.trigger = object.trigger;
     def.any_width = object.any_width && r.input.protocol == "canopen";
-    def.mailbox_reads_only = object.mailbox_reads_only;
-    def.nvm = object.nvm;
     r.ids.emplace(object.name, static_cast<model::ObjectId>(r.model.objects.size()));
     r.model.objects.push_back(std::move(def));
   }
   for (const Object& object : r.profile.objects) {
     const auto at = r.ids.find(object.name);
-    if (!object.part || at == r.ids.end()) continue;
-    const model::ObjectId whole = r.ids.find(object.part->of)->second;
-    r.model.objects[at->second].part = {whole, object.part->from, object.part->count};
+    if (!object.is_part() || at == r.ids.end()) continue;
+    model::ObjectDef& part = r.model.objects[at->second];
+    part.part.whole = r.ids.find(object.whole)->second;
     // A write of the whole would go past what holds for its part.
-    if (object.writable) r.model.objects[whole].mailbox_reads_only = true;
+    if (object.writable) r.model.objects[part.part.whole].mailbox_reads_only = true;
+    if (!part.is_directed()) continue;
+    part.part.sign = r.ids.find(object.sign)->second;
+    part.trigger = r.model.objects[part.part.sign].trigger;
+    if (object.writable) r.model.objects[part.part.sign].mailbox_reads_only = true;
   }
 }
 
@@ -292,7 +270,6 @@ std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile&
       resolve_state(r, slot);
       resolve_commands(r, slot);
     }
-    resolve_together(r);
     resolve_drive(r);
   } catch (const std::overflow_error& error) {
     r.fault("/constants", std::string(error.what()) + ": give constants and units_per_rev with fewer digits");

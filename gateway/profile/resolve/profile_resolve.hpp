@@ -43,6 +43,9 @@ struct ResolveInput {
   std::vector<ResolveAxis> axes;  ///< at most as many as the drive has
 };
 
+/// Key of the configuration's `limits` that bounds a quantity; empty: none does.
+[[nodiscard]] std::string_view limit_key(Quantity quantity);
+
 /// Faults point into the drive's entry of the configuration ("/constants/peak_current_a", "/axes/0/limits/velocity",
 /// ""), and their `file` is empty: the caller knows both. `loaded.faults` must be empty.
 [[nodiscard]] std::variant<model::DriveModel, std::vector<Fault>> resolve(const LoadedProfile& loaded,

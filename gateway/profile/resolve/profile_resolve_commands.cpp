@@ -2,6 +2,7 @@
 // Commands of one axis: which it can have, and their steps.
 #include <algorithm>
 
+#include "gateway/core/name_table.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
 namespace axisgate::profile {
@@ -14,34 +15,25 @@ struct Needs {
 };
 
 Needs needs_of(Command command, bool is_virtual) {
-  switch (command) {
-    case Command::move_absolute:
-    case Command::move_relative:
-      return {1, {Quantity::target_position}};
-    case Command::run_velocity:
-      return {3, {Quantity::target_velocity}};
-    case Command::run_torque:
-      return {4, {Quantity::target_torque, Quantity::max_velocity}};
-    case Command::home:
-      return {6, {Quantity::homing_method}};
-    case Command::set_position:
-      if (is_virtual) return {0, {Quantity::position_actual}};  // by the drive's own command, in no mode
-      return {6, {Quantity::homing_method, Quantity::position_actual}};
-    default:
-      return {};
-  }
+  using enum Quantity;
+  static const std::map<Command, Needs> kNeeds{{Command::move_absolute, {1, {target_position}}},
+                                               {Command::move_relative, {1, {target_position}}},
+                                               {Command::run_velocity, {3, {target_velocity}}},
+                                               {Command::run_torque, {4, {target_torque, max_velocity}}},
+                                               {Command::home, {6, {homing_method}}},
+                                               {Command::set_position, {6, {homing_method, position_actual}}}};
+  // By the drive's own command, in no mode.
+  if (is_virtual && command == Command::set_position) return {0, {position_actual}};
+  const auto at = kNeeds.find(command);
+  return at == kNeeds.end() ? Needs{} : at->second;
 }
 
 bool has_mode(const model::AxisModel& axis, std::int16_t mode) {
   return std::ranges::any_of(axis.modes, [&](const auto& row) { return row.first == mode; });
 }
 
-Errc outcome_named(const std::string& name) {
-  if (name == "busy") return Errc::busy;
-  if (name == "bad_value") return Errc::bad_value;
-  if (name == "not_reached") return Errc::not_reached;
-  return Errc::state_unsuitable;
-}
+constexpr auto kOutcomes =
+    names_of<Errc>({{Errc::busy, "busy"}, {Errc::bad_value, "bad_value"}, {Errc::not_reached, "not_reached"}});
 
 /// None of them: what is written cannot be had on this axis.
 bool put_value(const Resolving& r, const JsonNode& node, AxisSlot slot, model::Step& out) {
@@ -71,12 +63,14 @@ std::optional<model::Steps> steps_from(const Resolving& r, const JsonNode& owner
     if (step.object == model::kNoObject) return std::nullopt;
     step.limit = node.milliseconds("ms", {});
     step.optional = node.flag("optional", false);
-    step.otherwise = step.verb == wait ? Errc::not_reached : outcome_named(node.text("else"));
+    step.otherwise =
+        step.verb == wait ? Errc::not_reached : kOutcomes.named(node.text("else")).value_or(step.otherwise);
     if (step.verb == write) {
       if (!put_value(r, node, slot, step)) return std::nullopt;
     } else {
       step.until = r.condition(node, slot, verb).value();  // its object is there
     }
+    if (node.flag("joined", false) && r.input.protocol == "modbus-rtu") out.back().joined = true;
     out.push_back(std::move(step));
   }
   return out;

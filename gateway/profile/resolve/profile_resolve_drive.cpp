@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What belongs to the whole drive: setup, checks, alarms, resynchronisation read, and facts of its protocol.
+// What belongs to the whole drive: setup, checks, alarms, resynchronisation read, and facts of its protocol: on CANopen
+// what it sends by itself, and how it and the gateway notice that the other is gone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,9 @@
 namespace axisgate::profile {
 namespace {
 
+/// The gateway sends so many heartbeats in the time after which the drive takes it for dead.
+constexpr int kHeartbeatsBeforeLoss = 3;
+
 /// The alarms that a check may raise: the others have their own makers.
 constexpr auto kCheckAlarms = names_of<AxisAlarm>({{AxisAlarm::identity_mismatch, "identity_mismatch"},
                                                    {AxisAlarm::local_control, "local_control"},
@@ -17,45 +21,30 @@ constexpr auto kCheckAlarms = names_of<AxisAlarm>({{AxisAlarm::identity_mismatch
                                                    {AxisAlarm::stop_options, "stop_options"}});
 
 void resolve_checks(Resolving& r) {
-  for (const JsonNode& node : r.profile.section("checks").elements()) {
-    std::vector<model::ObjectId> seen;
-    for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
-      const auto slot = static_cast<AxisSlot>(i);
+  for (const JsonNode& node : r.profile.section("checks").elements())
+    r.each_object(node.text("object"), [&](model::ObjectId object, AxisSlot slot) {
       std::optional<model::Condition> bad = r.condition(node, slot);
-      if (!bad || std::ranges::find(seen, bad->object) != seen.end()) continue;
-      seen.push_back(bad->object);
-      model::Check out{node.text("name"), std::move(*bad), {}, r.model.object(seen.back()).slot, node.text("text"), {}};
+      if (!bad) return;
+      model::Check out{node.text("name"), std::move(*bad), {}, r.model.object(object).slot, node.text("text"), {}};
       out.alarm = kCheckAlarms.named(node.text("alarm")).value_or(out.alarm);
       const std::vector<JsonNode> remedy = node["remedy"].elements();
       for (const JsonNode& write : remedy)
         if (const std::optional<model::ObjectWrite> one = r.write(write, slot)) out.remedy.push_back(*one);
       if (out.remedy.size() != remedy.size()) out.remedy.clear();  // half a remedy is none
       r.model.checks.push_back(std::move(out));
-    }
-  }
-}
-
-template <class Make, class Write>
-void add_for_each_axis(const Resolving& r, Make make, std::vector<Write>& out) {
-  std::vector<model::ObjectId> seen;
-  for (std::size_t i = 0; i < r.model.axes.size(); ++i) {
-    const std::optional<Write> write = make(static_cast<AxisSlot>(i));
-    if (!write || std::ranges::find(seen, write->object) != seen.end()) continue;
-    seen.push_back(write->object);
-    out.push_back(*write);
-  }
+    });
 }
 
 void resolve_setup(Resolving& r) {
-  for (const JsonNode& node : r.profile.section("setup").elements()) {
-    if (!is_on(node, r.input.protocol)) continue;
-    if (!node.has("instead_of"))
-      add_for_each_axis(
-          r, [&](AxisSlot slot) { return r.write(node, slot); }, r.model.setup);
-    else
-      add_for_each_axis(
-          r, [&](AxisSlot slot) { return r.factory_write(node, slot); }, r.model.factory_writes);
-  }
+  for (const JsonNode& node : r.profile.section("setup").elements())
+    if (is_on(node, r.input.protocol))
+      r.each_object(node.text("write"), [&](model::ObjectId, AxisSlot slot) {
+        if (node.has("instead_of")) {
+          if (const auto write = r.factory_write(node, slot)) r.model.factory_writes.push_back(*write);
+        } else if (const auto write = r.write(node, slot)) {
+          r.model.setup.push_back(*write);
+        }
+      });
 }
 
 void resolve_resync(Resolving& r, const ProtocolSpec& protocol) {
@@ -102,9 +91,118 @@ void resolve_shared(Resolving& r) {
   }
 }
 
+/// Written at bring-up, and what no_comm_watchdog is judged by.
+void hold(Resolving& r, const std::string& name, std::int64_t raw, const std::string& why) {
+  r.each_object(name, [&](model::ObjectId id, AxisSlot) {
+    r.model.setup.push_back({id, raw, why});
+    r.model.loss_objects.push_back(id);
+  });
+}
+
+/// A map holds positions in the profile so far.
+void resolve_mapping(Resolving& r, const std::vector<model::TpdoProperties>& profiles) {
+  model::CanopenProperties& facts = r.model.canopen;
+  facts.tpdos.clear();
+  for (const model::TpdoProperties& tpdo : profiles) {
+    model::TpdoProperties& out = facts.tpdos.emplace_back(tpdo);
+    out.map.clear();
+    for (const model::ObjectId position : tpdo.map)
+      if (const auto id = r.ids.find(r.profile.objects[position].name); id != r.ids.end())
+        out.map.push_back(id->second);
+    if (!out.map.empty()) continue;
+    // Nothing of it is wanted: it carries the values of a motor that is no axis.
+    facts.unused_tpdos.push_back(tpdo.number);
+    facts.tpdos.pop_back();
+  }
+}
+
+void resolve_loss(Resolving& r, const ProtocolSpec& protocol) {
+  const LossSpec& loss = protocol.loss;
+  model::CanopenProperties& facts = r.model.canopen;
+  const JsonNode guard = r.profile.section("protocols")["canopen"]["guard"];
+  if (loss.by == LossSpec::By::heartbeat_consumer) {
+    facts.own_heartbeat = loss.after / kHeartbeatsBeforeLoss;
+    hold(r, loss.object, loss.value, "the drive notices when the gateway's heartbeat stays away");
+  } else if (loss.by == LossSpec::By::life_guarding) {
+    hold(r, guard.text("time_object"), facts.guard_time / std::chrono::milliseconds(1),
+         "the gateway guards the node so often");
+    hold(r, guard.text("factor_object"), facts.life_factor, "so many guard times without a frame are a dead gateway");
+    hold(r, loss.object, loss.value, "the drive's reaction to a dead gateway");
+  }
+}
+
+/// After the setup list, which it adds to.
+void resolve_canopen(Resolving& r, const ProtocolSpec& protocol) {
+  r.model.canopen = protocol.canopen;
+  r.model.canopen.identity = r.input.identity;
+  if (r.profile.identity && !r.model.canopen.identity[0])
+    r.model.canopen.identity[0] = r.profile.identity->numbers[0].front();
+  resolve_mapping(r, protocol.canopen.tpdos);
+  resolve_loss(r, protocol);
+}
+
+bool at_one_place(const model::ObjectDef& a, const model::ObjectDef& b) {
+  const bool own = !a.emulated && !b.emulated && !a.is_directed() && !b.is_directed();
+  return own && a.address == b.address && a.size == b.size && a.mask() == b.mask();
+}
+
+void name_aliases(model::DriveModel& model) {
+  for (std::size_t i = 0; i < model.objects.size(); ++i)
+    for (std::size_t j = 0; j < model.objects.size(); ++j)
+      if (i != j && at_one_place(model.objects[i], model.objects[j]))
+        model.objects[i].aliases.push_back(static_cast<model::ObjectId>(j));
+}
+
+/// Of several names for one field, the set-point that its motor's mode follows.
+bool is_followed(const model::DriveModel& model, model::ObjectId id) {
+  const AxisSlot slot = model.object(id).slot;
+  if (slot == kNoAxis) return false;
+  const auto& bindings = model.axes[slot].bindings;
+  return std::ranges::any_of(bindings, [&](const model::Binding& b) { return b.object == id; });
+}
+
+/// Each field once: all enable bits in the order of the motors, and then all values.
+void list_composed(model::DriveModel& model) {
+  std::vector<model::ObjectId>& out = model.composed;
+  for (std::size_t i = 0; i < model.objects.size(); ++i) {
+    const auto id = static_cast<model::ObjectId>(i);
+    if (!model.object(id).composed) continue;
+    const auto same =
+        std::ranges::find_if(out, [&](model::ObjectId o) { return at_one_place(model.object(o), model.object(id)); });
+    if (same == out.end())
+      out.push_back(id);
+    else if (is_followed(model, id) && !is_followed(model, *same))
+      *same = id;
+  }
+  std::ranges::sort(out, [&](model::ObjectId a, model::ObjectId b) {
+    const model::ObjectDef& left = model.object(a);
+    const model::ObjectDef& right = model.object(b);
+    if (left.turns_on != right.turns_on) return left.turns_on;
+    return left.address < right.address;
+  });
+}
+
+void list_unsolicited(Resolving& r) {
+  if (r.input.protocol == "keya-can")
+    r.model.unsolicited.every = r.profile.section("protocols")["keya-can"].milliseconds("heartbeat_ms", {});
+  for (const Object& object : r.profile.objects) {
+    const Place* place = object.place(r.input.protocol);
+    const auto id = r.ids.find(object.name);
+    if (place != nullptr && place->unsolicited && id != r.ids.end()) r.model.unsolicited.objects.push_back(id->second);
+  }
+}
+
+/// Objects that are not alone: several names for one place, fields of one frame, and what comes unasked.
+void resolve_together(Resolving& r) {
+  name_aliases(r.model);
+  list_composed(r.model);
+  list_unsolicited(r);
+}
+
 }  // namespace
 
 void resolve_drive(Resolving& r) {
+  resolve_together(r);
   const ProtocolSpec& protocol = r.profile.protocols.find(r.input.protocol)->second;
   r.model.profile = r.profile.name;
   r.model.title = r.profile.title;

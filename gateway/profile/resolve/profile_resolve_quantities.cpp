@@ -7,7 +7,6 @@
 
 #include "gateway/core/name_table.hpp"
 #include "gateway/profile/json/json_schema.hpp"
-#include "gateway/profile/resolve/limit_keys.hpp"
 #include "gateway/profile/resolve/profile_resolving.hpp"
 
 namespace axisgate::profile {
@@ -31,8 +30,8 @@ constexpr std::string_view kPosition = "position", kVelocity = "velocity", kAcce
 
 /// A speed, a ramp or a max_torque that the drive would hold as 0 is none: 0 means "leave as it is" (design 3.3 Zeros),
 /// and a drive that is told to slow down at 0, or without torque, may turn on.
-Range numbers_of_write(const QuantityRow& row, const Object& object, const model::ObjectDef& def) {
-  Range out = model::intersection(object.numbers(), def.range());
+Range numbers_of_write(const QuantityRow& row, const model::ObjectDef& def) {
+  Range out = model::intersection(def.printed, def.range());
   const bool rate = row.type == RegisterType::u32 && (row.kind == Kind::velocity || row.kind == Kind::acceleration);
   const bool torque = row.type == RegisterType::u16 && row.kind == Kind::torque;
   if ((rate || torque) && row.writable) out.min = std::max<std::int64_t>(out.min, 1);
@@ -49,21 +48,22 @@ Quantity opposite(Quantity quantity) {
 /// Limits of the axis that hold for this quantity, and the configuration key that says so.
 struct AxisLimit {
   Range range{INT64_MIN, INT64_MAX};
-  std::string key;
+  std::string key;  ///< empty: none does
+  [[nodiscard]] bool is_one() const { return range.min != INT64_MIN || range.max != INT64_MAX; }
 };
 
-AxisLimit axis_limit(const ResolveAxis& axis, const QuantityRow& row) {
-  const std::string key(limit_key(row.quantity));
-  const auto magnitude = [&](const std::optional<std::int64_t>& limit) {
-    return limit ? AxisLimit{{-*limit, *limit}, key} : AxisLimit{};
-  };
-  if (key == kPosition) return axis.limits.position ? AxisLimit{*axis.limits.position, key} : AxisLimit{};
-  if (key == kVelocity) return magnitude(axis.limits.velocity);
-  if (key == kAcceleration) return magnitude(axis.limits.acceleration);
-  if (key == kTorque) return magnitude(axis.limits.torque);
-  if (key == kQuickStop && axis.limits.quick_stop_deceleration_min)
-    return {{*axis.limits.quick_stop_deceleration_min, INT64_MAX}, key};
-  return {};
+AxisLimit axis_limit(const AxisLimits& limits, const QuantityRow& row) {
+  AxisLimit out;
+  const std::string_view key = limit_key(row.quantity);
+  const std::optional<std::int64_t> magnitude = key == kVelocity       ? limits.velocity
+                                                : key == kAcceleration ? limits.acceleration
+                                                : key == kTorque       ? limits.torque
+                                                                       : std::nullopt;
+  if (magnitude) out.range = {-*magnitude, *magnitude};
+  if (key == kPosition && limits.position) out.range = *limits.position;
+  if (key == kQuickStop) out.range.min = limits.quick_stop_deceleration_min.value_or(INT64_MIN);
+  if (out.is_one()) out.key = key;
+  return out;
 }
 
 class AxisQuantities {
@@ -99,22 +99,14 @@ class AxisQuantities {
 
   /// Statusword, controlword and mode of a virtual axis: the gateway's own objects hold the registers' numbers.
   std::optional<model::Binding> bind_emulated(const QuantityRow& row) const {
+    using enum Quantity;
     model::Binding out;
     out.quantity = row.quantity;
-    switch (row.quantity) {
-      case Quantity::statusword:
-        out.object = model_.statusword;
-        break;
-      case Quantity::controlword:
-        out.object = model_.controlword;
-        break;
-      case Quantity::mode_display:
-      case Quantity::mode:
-        out.object = model_.mode;
-        break;
-      default:
-        return std::nullopt;
-    }
+    out.object = row.quantity == statusword                             ? model_.statusword
+                 : row.quantity == controlword                          ? model_.controlword
+                 : row.quantity == mode || row.quantity == mode_display ? model_.mode
+                                                                        : model::kNoObject;
+    if (out.object == model::kNoObject) return std::nullopt;
     out.poll = row.writable ? model::PollClass::once : model::PollClass::fast;
     out.writable = row.writable;
     out.limits = model::intersection(range_of(row.type), r_.model.object(out.object).range());
@@ -138,10 +130,10 @@ class AxisQuantities {
   std::optional<model::Binding> compose(const QuantitySpec& spec, model::Binding out) {
     const bool swaps = axis_.inverted && out.quantity == Quantity::digital_inputs;
     for (const BitsSpec& field : spec.bits) {
-      const model::ObjectId object = r_.id(field.object, slot_);
+      const model::ObjectId object = r_.id(field.name, slot_);
       if (object == model::kNoObject) continue;  // a bit the drive cannot give is 0
       if (!swaps) {
-        out.bits.push_back({object, field.from, field.count, field.to, field.inverted});
+        out.bits.emplace_back(field).object = object;
         continue;
       }
       for (std::uint8_t i = 0; i < field.count; ++i) {
@@ -157,9 +149,10 @@ class AxisQuantities {
                                        model::Binding out) {
     if (row.kind != Kind::code) {
       const model::Unit& unit = r_.profile.units.find(spec.unit_of(object))->second;
-      std::optional<model::ScaleRecipe> recipe = r_.recipe(unit);
+      std::vector<std::string> missing;
+      std::optional<model::ScaleRecipe> recipe = r_.recipe(unit, &missing);
       if (!recipe) {  // not supported, never guessed
-        refuse_limit(row, r_.missing(unit));
+        refuse_limit(row, missing);
         return std::nullopt;
       }
       const Rational base = base_per_register(unit.base, axis_.units_per_rev);
@@ -173,14 +166,15 @@ class AxisQuantities {
         out.recipe = std::move(*recipe);
     }
     const model::ObjectDef& def = r_.model.object(out.object);
+    out.is_real = def.is_real;
     out.writable = row.writable && def.writable;
     // What cannot be read back is no quantity, except where writing is all there is to it.
     if (!out.writable && !def.readable) return std::nullopt;
     if (row.quantity == Quantity::homing_method) translate(out);
     if (row.quantity == Quantity::position_actual) model_.position_commanded = spec.commanded;
-    if (row.writable) limit(row, spec, object, def, out);
+    if (row.writable) limit(row, spec, def, out);
     if (!out.scaled) {
-      out.recipe.raw = numbers_of_write(row, object, def);
+      out.recipe.raw = numbers_of_write(row, def);
       out.recipe.allowed = out.limits;
     }
     return out;
@@ -188,7 +182,7 @@ class AxisQuantities {
 
   /// Of a quantity that the axis lacks for want of constants: who wrote it believes that the axis is limited.
   void refuse_limit(const QuantityRow& row, const std::vector<std::string>& constants) {
-    const AxisLimit own = axis_limit(axis_, row);
+    const AxisLimit own = axis_limit(axis_.limits, row);
     if (!row.writable || own.key.empty() || constants.empty()) return;
     const std::string pointer = "/axes/" + std::to_string(slot_) + "/limits/" + own.key;
     if (std::ranges::find(r_.faults, pointer, &Fault::pointer) != r_.faults.end()) return;  // by another quantity
@@ -204,22 +198,21 @@ class AxisQuantities {
     out.codes.assign(methods.begin(), methods.end());
   }
 
-  void limit(const QuantityRow& row, const QuantitySpec& spec, const Object& object, const model::ObjectDef& def,
-             model::Binding& out) {
-    const Range raw = numbers_of_write(row, object, def);
+  void limit(const QuantityRow& row, const QuantitySpec& spec, const model::ObjectDef& def, model::Binding& out) {
+    const Range raw = numbers_of_write(row, def);
     if (!out.codes.empty())
       out.limits = {out.codes.front().first, out.codes.back().first};
     else if (out.scaled)
-      out.limits = model::intersection(out.limits, model::registers_within(raw, out.raw_per_unit, out.inverse));
+      out.limits = model::intersection(out.limits, model::registers_for(def, raw, out.raw_per_unit, out.inverse));
     out.limits = model::intersection(out.limits, profile_limit(spec));
-    const AxisLimit own = axis_limit(axis_, row);
+    const AxisLimit own = axis_limit(axis_.limits, row);
     const Range allowed = model::intersection(out.limits, own.range);
     if (allowed.min > allowed.max)
       r_.fault(fmt::format("/axes/{}/limits/{}", slot_, own.key),
                fmt::format("leaves no value for {}, which this drive takes from {} to {}", row.name, out.limits.min,
                            out.limits.max));
     out.limits = allowed;
-    out.limited = own.range.min != INT64_MIN || own.range.max != INT64_MAX;
+    out.limited = own.is_one();
   }
 
   [[nodiscard]] Range profile_limit(const QuantitySpec& spec) const {

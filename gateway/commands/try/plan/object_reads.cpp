@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace axisgate::commands {
 namespace {
@@ -14,7 +15,7 @@ std::string place_text(const model::DriveModel& model, const model::ObjectDef& o
 }
 
 std::string type_text(const model::ObjectDef& object) {
-  return fmt::format("{}{}", object.is_signed ? 'i' : 'u', 8 * object.size);
+  return model::type_name(object.size, object.is_signed, object.is_real);
 }
 
 bool has_two_words(const model::DriveModel& model, const model::ObjectDef& object) {
@@ -44,8 +45,8 @@ std::vector<model::ObjectId> objects_to_read(const model::DriveModel& model) {
   std::vector<model::ObjectId> out;
   for (std::size_t id = 0; id < model.objects.size(); ++id) {
     const model::ObjectDef& object = model.objects[id];
-    if (object.readable && !object.emulated && !object.trigger && !object.composed)
-      out.push_back(static_cast<model::ObjectId>(id));
+    const bool own = !object.emulated && !object.composed && !object.is_directed();  // its two objects are read
+    if (object.readable && own && !object.trigger) out.push_back(static_cast<model::ObjectId>(id));
   }
   return out;
 }
@@ -76,6 +77,10 @@ ObjectRow row_of(const model::DriveModel& model, model::ObjectId id, const Batch
     row.wrong = !object.any_width || bytes > object.size;
     if (row.wrong) return row;
     row.remark.clear();
+  }
+  if (object.is_real) {
+    row.remark = fmt::format("{}", std::bit_cast<float>(answer.object_data));
+    return row;
   }
   row.value = object.number(answer.object_data);
   if (has_two_words(model, object)) row.other_order = object.number(other_order(answer.object_data));
