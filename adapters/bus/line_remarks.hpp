@@ -19,7 +19,7 @@ class LineRemarks {
   static constexpr Duration kPause = std::chrono::minutes(1);
 
   /// `log` must outlive it; `source` as Log::write() has it.
-  LineRemarks(const Log& log, std::string source) : log_(log), source_(std::move(source)) {}
+  LineRemarks(const Log& log, LogSource source) : log_(log), source_(std::move(source)) {}
 
   /// Before a request goes out: what the watch knows by now.
   void tell_of(const EchoWatch& echo, Instant now);
@@ -34,7 +34,7 @@ class LineRemarks {
   void tell(Kind& kind, std::string message, Instant now);
 
   const Log& log_;
-  std::string source_;
+  LogSource source_;
   Kind only_copies_;
   Kind misfit_;
   EchoWatch::Belief logged_belief_ = EchoWatch::Belief::unknown;

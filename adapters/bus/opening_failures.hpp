@@ -11,7 +11,7 @@ namespace axisgate::bus {
 
 class OpeningFailures {
  public:
-  void tell(const Log& log, const std::string& source, const std::string& why) {
+  void tell(const Log& log, const LogSource& source, const std::string& why) {
     if (why == last_) return;
     last_ = why;
     log.write(OpeningFailure{source, why});

@@ -10,7 +10,7 @@
 namespace axisgate::can {
 
 CanLine::CanLine(const std::string& bus, std::unique_ptr<CanLink> link, const Log& log, Describe describe)
-    : log_source_("bus " + bus), log_(log), describe_(describe), link_(std::move(link)) {
+    : log_source_(bus_source(bus)), log_(log), describe_(describe), link_(std::move(link)) {
   assert(link_ != nullptr);
 }
 

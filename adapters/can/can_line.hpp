@@ -46,7 +46,7 @@ class CanLine {
  private:
   void log_frame(std::string_view direction, const CanFrame& frame, std::string_view remark) const;
 
-  std::string log_source_;
+  LogSource log_source_;
   const Log& log_;
   Describe describe_;
   bool decode_ = false;

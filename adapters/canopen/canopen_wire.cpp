@@ -64,7 +64,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
   [[nodiscard]] Node* find(std::uint8_t number);
 
   CanopenSettings settings_;
-  std::string log_source_;
+  LogSource log_source_;
   const Log& log_;
   Runtime& runtime_;
   bus::WireEvents* events_ = nullptr;
@@ -84,7 +84,7 @@ class CanopenWire final : public bus::Wire, private can::CanLinkEvents {
 
 CanopenWire::CanopenWire(CanopenSettings settings, std::unique_ptr<can::CanLink> link, Runtime& runtime, const Log& log)
     : settings_(std::move(settings)),
-      log_source_("bus " + settings_.name),
+      log_source_(bus_source(settings_.name)),
       log_(log),
       runtime_(runtime),
       sdo_(settings_.timeout),

@@ -50,7 +50,7 @@ class KeyaSerialWire final : public bus::Wire, private bus::ByteLinkEvents {
   void log_frame(std::string_view direction, Bytes bytes, std::string_view text) const;
 
   KeyaSerialSettings settings_;
-  std::string log_source_;
+  LogSource log_source_;
   Runtime& runtime_;
   const Log& log_;
   bus::WireEvents* events_ = nullptr;
@@ -75,7 +75,7 @@ class KeyaSerialWire final : public bus::Wire, private bus::ByteLinkEvents {
 KeyaSerialWire::KeyaSerialWire(KeyaSerialSettings settings, std::unique_ptr<bus::ByteLink> link, Runtime& runtime,
                                const Log& log)
     : settings_(std::move(settings)),
-      log_source_("bus " + settings_.name),
+      log_source_(bus_source(settings_.name)),
       runtime_(runtime),
       log_(log),
       receiver_(settings_.line),

@@ -11,7 +11,7 @@
 namespace axisgate::kinco {
 
 KincoWire::KincoWire(std::string name, std::unique_ptr<bus::ByteLink> link, Runtime& runtime, const Log& log)
-    : log_source_("bus " + std::move(name)),
+    : log_source_(bus_source(std::move(name))),
       log_(log),
       runtime_(runtime),
       remarks_(log, log_source_),

@@ -39,7 +39,7 @@ class KincoWire final : public bus::Wire, private bus::ByteLinkEvents {
   void take_other(std::string_view remark);
   void log_frame(std::string_view direction, Bytes bytes, const Frame& frame, std::string_view remark) const;
 
-  std::string log_source_;
+  LogSource log_source_;
   const Log& log_;
   bus::WireEvents* events_ = nullptr;
   Runtime& runtime_;

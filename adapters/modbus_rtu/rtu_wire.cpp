@@ -21,7 +21,7 @@ constexpr std::uint8_t kStandardBroadcast = 0;
 
 RtuWire::RtuWire(std::string name, std::vector<RtuNode> nodes, LineSpeed speed, std::unique_ptr<RtuLink> link,
                  Runtime& runtime, const Log& log)
-    : log_source_("bus " + std::move(name)),
+    : log_source_(bus_source(std::move(name))),
       nodes_(std::move(nodes)),
       speed_(speed),
       runtime_(runtime),

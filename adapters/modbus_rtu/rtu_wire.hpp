@@ -75,7 +75,7 @@ class RtuWire final : public bus::Wire, private RtuLinkEvents {
   [[nodiscard]] bool knows(std::uint8_t unit) const;
   void log_frame(std::string_view direction, Bytes frame, std::string_view words) const;
 
-  std::string log_source_;
+  LogSource log_source_;
   std::vector<RtuNode> nodes_;
   LineSpeed speed_;
   Runtime& runtime_;

@@ -25,7 +25,7 @@ char parity_letter(Parity parity) { return parity == Parity::none ? 'N' : parity
 
 SerialLink::SerialLink(std::string name, SerialSettings settings, asio::io_context& context, Runtime& runtime,
                        const Log& log)
-    : log_source_("bus " + std::move(name)),
+    : log_source_(bus_source(std::move(name))),
       settings_(std::move(settings)),
       context_(context),
       runtime_(runtime),

@@ -48,7 +48,7 @@ class SerialLink final : public bus::ByteLink {
   void close();
   [[nodiscard]] std::string device_and(const boost::system::error_code& error) const;
 
-  std::string log_source_;
+  LogSource log_source_;
   SerialSettings settings_;
   boost::asio::io_context& context_;
   Runtime& runtime_;

@@ -62,7 +62,10 @@ void BusLine::show(BusImage& shown) const {
   shown.superseded = s.superseded;
   shown.reconnects = s.reconnects;
   shown.echoes = s.echoes;
-  shown.times = bus_->exchange_times().by_class();
+  const bus::Bus::Times times = bus_->times();
+  shown.times = times.exchanges.by_class();
+  shown.waits = times.waits.by_class();
+  shown.busy = times.busy;
 }
 
 }  // namespace axisgate::compose

@@ -33,10 +33,16 @@ LogPace pace_of(const Event& event) {
 }
 
 /// "axis 3 lift"; the name that an axis has without one in the configuration is its number.
-std::string source_of(const ProcessImage& image, AxisNumber number) {
-  if (number == 0) return "gateway";
-  const AxisImage* const axis = image.find(number);
-  return log_source(number, axis == nullptr ? std::string() : axis->name);
+LogSource source_of(const ProcessImage& image, const Event& event) {
+  LogSource out{.words = "gateway"};
+  if (event.axis != 0) {
+    const AxisImage* const axis = image.find(event.axis);
+    const bool on_bus = axis != nullptr && axis->bus < image.buses.size();
+    out = log_source(event.axis, axis == nullptr ? std::string() : axis->name,
+                     on_bus ? image.buses[axis->bus].name : std::string());
+  }
+  out.event = text(event.kind);
+  return out;
 }
 
 }  // namespace
@@ -47,7 +53,7 @@ Gateway::Gateway(const config::Config& config, const Models& models, Runtime& ru
       log_(log),
       make_wire_(std::move(make_wire)),
       events_([this](const Event& e) {
-        log_.write(level_of(e.kind), source_of(image_, e.axis), e.text, pace_of(e));
+        log_.write(level_of(e.kind), source_of(image_, e), e.text, pace_of(e));
         image_.changes.mark(0);
       }),
       closing_(runtime.make_timer([this] {

@@ -95,20 +95,21 @@ std::vector<StartLine> start_lines(const config::LoadedConfig& loaded, std::stri
   std::size_t axes = 0;
   for (const config::BusConfig& bus : config.buses) axes += axes_of(bus);
   std::vector<StartLine> lines;
-  lines.push_back(
-      {"gateway", fmt::format("axisgate {}, configuration {}: {}, {}", version, config.file,
-                              counted(config.buses.size(), "bus", "buses"), counted(axes, "axis", "axes"))});
+  lines.push_back({{.words = "gateway"},
+                   fmt::format("axisgate {}, configuration {}: {}, {}", version, config.file,
+                               counted(config.buses.size(), "bus", "buses"), counted(axes, "axis", "axes"))});
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     const config::BusConfig& bus = config.buses[b];
-    lines.push_back({"bus " + bus.name, bus_text(bus)});
+    lines.push_back({bus_source(bus.name), bus_text(bus)});
     for (std::size_t d = 0; d < bus.drives.size(); ++d)
       for (const config::AxisConfig& axis : bus.drives[d].axes)
-        lines.push_back({log_source(axis.number, axis.name), axis_text(bus, bus.drives[d], axis, loaded.models[b][d])});
+        lines.push_back(
+            {log_source(axis.number, axis.name, bus.name), axis_text(bus, bus.drives[d], axis, loaded.models[b][d])});
   }
   for (const modbus_tcp::ListenerSettings& listener : config.modbus_tcp)
-    lines.push_back({"modbus", listener_text(listener)});
-  if (config.dds) lines.push_back({"dds", dds_line(*config.dds)});
-  if (config.web) lines.push_back({"web", web_line(*config.web)});
+    lines.push_back({{.words = "modbus"}, listener_text(listener)});
+  if (config.dds) lines.push_back({{.words = "dds"}, dds_line(*config.dds)});
+  if (config.web) lines.push_back({{.words = "web"}, web_line(*config.web)});
   return lines;
 }
 

@@ -13,7 +13,7 @@
 namespace axisgate::compose {
 
 struct StartLine {
-  std::string source;  ///< as Log::write() takes it
+  LogSource source;
   std::string text;
 };
 

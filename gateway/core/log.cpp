@@ -19,7 +19,7 @@ Log::Log(Sink sink, LogLevel most_detailed, OnOpeningFailure on_opening_failure)
 
 void Log::limit(std::function<Instant()> now) { limit_ = std::make_shared<Limit>(Limit{std::move(now)}); }
 
-void Log::write(LogLevel level, std::string_view source, std::string_view message, LogPace pace) const {
+void Log::write(LogLevel level, const LogSource& source, std::string_view message, LogPace pace) const {
   if (!wants(level)) return;
   message = message.substr(0, kMaxLogLine);
   if (limit_ == nullptr || level == LogLevel::debug) return sink_(level, source, message);
@@ -28,6 +28,10 @@ void Log::write(LogLevel level, std::string_view source, std::string_view messag
   if (*left_out == 0) return sink_(level, source, message);
   const std::string counted = left_out_text(*left_out);
   sink_(level, source, std::string(message.substr(0, kMaxLogLine - counted.size())) + counted);
+}
+
+void Log::write(LogLevel level, std::string_view source, std::string_view message, LogPace pace) const {
+  if (wants(level)) write(level, LogSource{.words = std::string(source)}, message, pace);
 }
 
 void Log::tell_left_out() const {

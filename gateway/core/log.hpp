@@ -20,14 +20,14 @@ inline constexpr std::size_t kMaxLogLine = 512;
 
 /// A link could not be opened and goes on trying: a warning in the log, and a reason to end for who does not try again.
 struct OpeningFailure {
-  std::string_view source;
+  const LogSource& source;
   std::string_view why;
 };
 
 /// Passed by reference to whoever logs; owned by the composition root.
 class Log {
  public:
-  using Sink = std::function<void(LogLevel, std::string_view source, std::string_view message)>;
+  using Sink = std::function<void(LogLevel, const LogSource& source, std::string_view message)>;
   using OnOpeningFailure = std::function<void(const OpeningFailure&)>;
   Log() = default;
   /// `on_opening_failure` is called after the line of it was written.
@@ -38,7 +38,8 @@ class Log {
   /// From here on no kind of line comes more often than its pace allows; lines of debugging are not limited, since
   /// somebody has asked for them.
   void limit(std::function<Instant()> now);
-  /// `source` says who speaks: "bus lift-serial", "axis 1", "modbus 127.0.0.1:50312".
+  void write(LogLevel level, const LogSource& source, std::string_view message, LogPace pace = LogPace::minute) const;
+  /// Of no axis and no bus: "modbus", "gateway".
   void write(LogLevel level, std::string_view source, std::string_view message, LogPace pace = LogPace::minute) const;
   void write(const OpeningFailure& failure) const;
   /// Of a limited log, from time to time: what was left out and no later line has told.

@@ -88,7 +88,7 @@ bool LogLimit::has_room(LogPace pace, Instant now) {
 
 std::optional<std::uint64_t> LogLimit::takes(const Line& line, LogPace pace, Instant now) {
   if (pace == LogPace::each) return 0;
-  std::string key(line.source);
+  std::string key(line.source.words);
   key += '\n';
   key += log_kind(line.message);
   auto found = kinds_.find(key);
@@ -105,7 +105,7 @@ std::optional<std::uint64_t> LogLimit::takes(const Line& line, LogPace pace, Ins
     kind.told = now;
     return std::exchange(kind.left_out, {}).lines;
   }
-  kind.left_out = {line.level, std::string(line.source), std::string(line.message), kind.left_out.lines + 1};
+  kind.left_out = {line.level, line.source, std::string(line.message), kind.left_out.lines + 1};
   return std::nullopt;
 }
 
@@ -119,7 +119,9 @@ std::vector<LogLimit::LeftOut> LogLimit::over(Instant now) {
   std::erase_if(kinds_, [now](const auto& each) { return now - each.second.told >= kMinute; });
   if (of_other_kinds_ > 0 && (others_told_ == kLongAgo || now - others_told_ >= kMinute)) {
     others_told_ = now;
-    out.push_back({LogLevel::warning, "log", "more kinds of lines within a minute than are told apart",
+    out.push_back({LogLevel::warning,
+                   {.words = "log"},
+                   "more kinds of lines within a minute than are told apart",
                    std::exchange(of_other_kinds_, 0)});
   }
   return out;

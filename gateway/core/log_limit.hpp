@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gateway/core/clock.hpp"
+#include "gateway/core/log_source.hpp"
 
 namespace axisgate {
 
@@ -40,7 +41,7 @@ class LogLimit {
 
   struct Line {
     LogLevel level = LogLevel::info;
-    std::string_view source;
+    const LogSource& source;
     std::string_view message;
   };
   /// With how many of its kind were left out since the last one; none: it is left out as well.
@@ -49,8 +50,8 @@ class LogLimit {
   /// Lines that were left out, and that no other has told of within their minute.
   struct LeftOut {
     LogLevel level = LogLevel::info;
-    std::string source;
-    std::string newest;
+    LogSource source{};
+    std::string newest{};
     std::uint64_t lines = 0;
   };
   [[nodiscard]] std::vector<LeftOut> over(Instant now);

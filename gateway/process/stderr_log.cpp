@@ -7,12 +7,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string>
+
+#include "gateway/process/journal.hpp"
 
 namespace axisgate::process {
 namespace {
@@ -34,33 +36,34 @@ bool is_journal() {
 
 /// For the journal, which has a time of its own, with the priority that sd-daemon(3) reads; else with the time of day.
 std::string head_of(LogLevel level, bool journal) {
-  if (journal) {
-    constexpr std::array<int, 4> kPriorities{3, 4, 6, 7};
-    return fmt::format("<{}>", kPriorities.at(static_cast<std::size_t>(level)));
-  }
+  if (journal) return fmt::format("<{}>", priority_of(level));
   const auto now = std::chrono::system_clock::now();
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
   return fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} ", fmt::localtime(std::chrono::system_clock::to_time_t(now)), ms);
 }
 
+/// One call, so that lines of two processes on one terminal do not mix. A full disk takes none of it, and says so only
+/// now.
+bool stderr_takes(const std::string& lines) {
+  return takes_a_line() && std::fwrite(lines.data(), 1, lines.size(), stderr) == lines.size();
+}
+
 }  // namespace
 
-Log stderr_log(LogLevel most_detailed) {
+Log stderr_log(LogLevel most_detailed, const std::string& journal_socket) {
+  // Shared by the copies of the log.
+  const auto journal = is_journal() ? std::make_shared<Journal>(journal_socket) : nullptr;
   return Log(
-      [lost = std::uint64_t{0}, journal = is_journal()](LogLevel level, std::string_view source,
-                                                        std::string_view message) mutable {
-        if (!takes_a_line()) {
-          ++lost;
-          return;
+      [lost = std::uint64_t{0}, journal](LogLevel level, const LogSource& source, std::string_view message) mutable {
+        const std::string before = lost == 0 ? "" : fmt::format("({} lines lost here: nobody took them)\n", lost);
+        const std::string line = fmt::format("{} {}: {}", text(level), source.words, message);
+        bool taken = journal != nullptr && journal->takes(journal_entry(level, source, before + line));
+        if (!taken) {
+          const std::string head = head_of(level, journal != nullptr);
+          const std::string first = lost == 0 || journal == nullptr ? before : head + before;
+          taken = stderr_takes(first + head + line + "\n");
         }
-        const std::string head = head_of(level, journal);
-        const std::string before =
-            lost == 0 ? std::string()
-                      : fmt::format("{}({} lines lost here: nobody took them)\n", journal ? head : std::string(), lost);
-        const std::string line = before + fmt::format("{}{} {}: {}\n", head, text(level), source, message);
-        // One call, so that lines of two processes on one terminal do not mix.
-        // A full disk takes none of it, and says so only now.
-        lost = std::fwrite(line.data(), 1, line.size(), stderr) == line.size() ? 0 : lost + 1;
+        lost = taken ? 0 : lost + 1;
       },
       most_detailed);
 }

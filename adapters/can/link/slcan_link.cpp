@@ -10,7 +10,7 @@ namespace axisgate::can {
 
 SlcanLink::SlcanLink(std::string name, CanDevice device, std::uint32_t bitrate, std::unique_ptr<bus::ByteLink> port,
                      Runtime& runtime, const Log& log)
-    : log_source_("bus " + std::move(name)),
+    : log_source_(bus_source(std::move(name))),
       path_(device.path),
       runtime_(runtime),
       log_(log),

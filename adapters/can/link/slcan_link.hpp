@@ -44,7 +44,7 @@ class SlcanLink final : public CanLink, private bus::ByteLinkEvents {
   /// Tells the events what they do not know yet.
   void report();
 
-  std::string log_source_;
+  LogSource log_source_;
   std::string path_;
   Runtime& runtime_;
   const Log& log_;

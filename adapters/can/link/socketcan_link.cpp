@@ -19,7 +19,7 @@ using serial::StillOpen;
 
 SocketCanLink::SocketCanLink(std::string name, std::string interface, std::uint32_t bitrate,
                              boost::asio::io_context& context, Runtime& runtime, const Log& log)
-    : log_source_("bus " + std::move(name)),
+    : log_source_(bus_source(std::move(name))),
       interface_(std::move(interface)),
       bitrate_(bitrate),
       context_(context),

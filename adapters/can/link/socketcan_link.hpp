@@ -56,7 +56,7 @@ class SocketCanLink final : public CanLink {
   [[nodiscard]] std::string trouble_now() const;
   void arm();
 
-  std::string log_source_;
+  LogSource log_source_;
   std::string interface_;
   std::uint32_t bitrate_;
   boost::asio::io_context& context_;

@@ -19,7 +19,7 @@ char parity_letter(serial::Parity parity) {
 
 LibmodbusLink::LibmodbusLink(std::string name, serial::SerialSettings settings, boost::asio::io_context& context,
                              Runtime& runtime, const Log& log, Duration adapter_latency)
-    : log_source_("bus " + std::move(name)),
+    : log_source_(bus_source(std::move(name))),
       settings_(std::move(settings)),
       adapter_latency_(adapter_latency),
       context_(context),

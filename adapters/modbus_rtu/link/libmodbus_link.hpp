@@ -48,7 +48,7 @@ class LibmodbusLink final : public RtuLink, private PortWorkerEvents {
   void arm();
   void closed(const std::string& why);
 
-  std::string log_source_;
+  LogSource log_source_;
   serial::SerialSettings settings_;
   Duration adapter_latency_;
   boost::asio::io_context& context_;

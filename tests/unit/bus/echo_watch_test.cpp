@@ -152,7 +152,7 @@ TEST(GlitchSkipTest, skips_eight_bytes_before_a_frame_and_takes_more_for_noise) 
 TEST(LineRemarksTest, say_each_kind_once_a_minute_and_how_many_were_left_out) {
   std::vector<std::string> lines;
   const Log log{[&](LogLevel, std::string_view, std::string_view message) { lines.emplace_back(message); }};
-  LineRemarks remarks(log, "bus lift");
+  LineRemarks remarks(log, bus_source("lift"));
   Instant now = Instant{} + std::chrono::hours(1);
   const Instant end = now + LineRemarks::kPause;
   for (; now < end; now += std::chrono::milliseconds(10)) remarks.misfit("read", "a value", "another length", now);

@@ -164,13 +164,16 @@ TEST(ExchangeTimes, counts_each_exchange_in_the_bucket_of_its_class_that_doubles
   times.add(Priority::poll, 1638399us);
   times.add(Priority::poll, 1638400us);
   times.add(Priority::poll, 1h);
-  const auto& stops = times.by_class()[static_cast<std::size_t>(Priority::stop)];
+  const auto& stops = times.by_class()[static_cast<std::size_t>(Priority::stop)].counts;
   EXPECT_EQ(stops[0], 2U);
   EXPECT_EQ(stops[1], 2U);
   EXPECT_EQ(stops[2], 1U);
   const auto& polls = times.by_class()[static_cast<std::size_t>(Priority::poll)];
-  EXPECT_EQ(polls[14], 1U);
-  EXPECT_EQ(polls[15], 2U);
+  EXPECT_EQ(polls.counts[14], 1U);
+  EXPECT_EQ(polls.counts[15], 2U);
+  EXPECT_EQ(polls.total(), 3U);
+  EXPECT_EQ(Duration(polls.sum_ns), 1638399us + 1638400us + 1h);
+  EXPECT_EQ(times.sum(), Duration(polls.sum_ns) + 598us);
 }
 
 TEST(LoadMeter, tells_the_share_of_the_last_whole_second) {
