@@ -62,7 +62,7 @@ Arbiter::Submission Arbiter::submit(const BusJob& job, Instant now) {
     waiting->job.start_by = std::max(waiting->job.start_by, job.start_by);
     return {Errc::ok, waiting->id, true};
   }
-  Entry entry{.id = last_id_ + 1, .place = last_id_ + 1, .job = job};
+  Entry entry{.id = last_id_ + 1, .place = last_id_ + 1, .job = job, .waits_since = now};
   if (const Entry* older = supersedable(job)) {
     ++statistics_.superseded;
     entry.place = older->place;
@@ -84,7 +84,9 @@ std::optional<Arbiter::Grant> Arbiter::next(Instant now) {
   const Grant& grant = chosen->grant;
   DriveTurns& drive = drives_[grant.drive];
   drive.served[static_cast<std::size_t>(grant.priority)] = ++grants_;
+  Instant waits_since = drive.poll_due == kLongAgo ? now : drive.poll_due;  // before all that is overdue
   if (Entry* entry = find(grant.id)) {
+    waits_since = entry->waits_since;
     entry->started = true;
     others_since_poll_ = std::min(others_since_poll_ + 1, kOthersPerPoll);
   } else {
@@ -92,7 +94,7 @@ std::optional<Arbiter::Grant> Arbiter::next(Instant now) {
     others_since_poll_ = 0;
   }
   wire_busy_ = true;
-  granted_ = {grant.id, grant.drive, now};
+  granted_ = {grant.id, grant.drive, now, grant.priority, waits_since};
   return grant;
 }
 
@@ -151,6 +153,8 @@ void Arbiter::decline() {
 void Arbiter::exchange_over(Instant silent_until, bool lost) {
   assert(wire_busy_);
   wire_busy_ = false;
+  if (granted_.waits_since != kNever) waits_.add(granted_.priority, granted_.at - granted_.waits_since);
+  if (Entry* entry = find(granted_.id)) entry->waits_since = kNever;
   silent_until_ = silent_until;
   drives_[granted_.drive].unanswered = lost;
   const Duration taken = silent_until - granted_.at;

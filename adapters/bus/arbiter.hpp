@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adapters/bus/bus_job.hpp"
+#include "adapters/bus/exchange_times.hpp"
 #include "adapters/bus/statistics.hpp"
 
 namespace axisgate::bus {
@@ -100,6 +101,8 @@ class Arbiter {
   [[nodiscard]] bool wire_busy() const { return wire_busy_; }
   [[nodiscard]] std::size_t waiting() const;
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }  ///< refused, coalesced, superseded
+  /// By class, from the acceptance of a bus job, or from when a poll was due, to its first exchange.
+  [[nodiscard]] const ExchangeTimes& waits() const { return waits_; }
 
  private:
   struct Entry {
@@ -107,7 +110,8 @@ class Arbiter {
     JobId place = 0;  ///< its id, or the place of the bus job that it superseded
     BusJob job;
     bool started = false;
-    Instant ready_at = kLongAgo;  ///< of a started one
+    Instant ready_at = kLongAgo;   ///< of a started one
+    Instant waits_since = kNever;  ///< its acceptance; kNever: it has had an exchange
   };
   struct DriveTurns {
     Instant poll_due = kNever;
@@ -145,9 +149,12 @@ class Arbiter {
     JobId id = 0;
     DriveSlot drive = 0;
     Instant at = kLongAgo;
+    Priority priority = Priority::poll;
+    Instant waits_since = kNever;  ///< kNever: it is not its first exchange
   } granted_;
   Instant silent_until_ = kLongAgo;
   Statistics statistics_;
+  ExchangeTimes waits_;
 };
 
 }  // namespace axisgate::bus

@@ -258,6 +258,16 @@ std::uint16_t Bus::load_permille() const {
   return carried ? bits_.permille(*carried, now()) : load_.permille(now());
 }
 
+Bus::Times Bus::times() const {
+  Times out{statistics_.times, arbiter_.waits(), statistics_.times.sum()};
+  const auto carried = settings_.bit_rate == 0 ? std::nullopt : wire_->bits_carried();
+  if (!carried) return out;
+  const std::uint64_t seconds = *carried / settings_.bit_rate, rest = *carried % settings_.bit_rate;
+  const Duration part = Duration(std::chrono::seconds(1)) * static_cast<std::int64_t>(rest) / settings_.bit_rate;
+  out.busy = std::chrono::seconds(seconds) + part;
+  return out;
+}
+
 void Bus::set_decode(bool on) { wire_->set_decode(on); }
 
 }  // namespace axisgate::bus

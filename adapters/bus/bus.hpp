@@ -75,7 +75,12 @@ class Bus final : private WireEvents {
   [[nodiscard]] bool up() const { return up_; }
   [[nodiscard]] Instant now() const { return runtime_.now(); }
   [[nodiscard]] Statistics statistics() const;
-  [[nodiscard]] const ExchangeTimes& exchange_times() const { return statistics_.times; }
+  struct Times {
+    const ExchangeTimes& exchanges;
+    const ExchangeTimes& waits;  ///< as Arbiter::waits()
+    Duration busy;               ///< how long an exchange was on the wire; on CAN, any frame
+  };
+  [[nodiscard]] Times times() const;
   [[nodiscard]] std::size_t queue_depth() const;
   /// Share of the last whole second in which an exchange was on the wire, in 0.1 %; on CAN, in which any frame was.
   [[nodiscard]] std::uint16_t load_permille() const;
@@ -116,7 +121,7 @@ class Bus final : private WireEvents {
   void link_down(const std::string& why);
   void soon();
   void turn_at(Instant due);
-  [[nodiscard]] std::string log_source() const { return "bus " + settings_.name; }
+  [[nodiscard]] LogSource log_source() const { return bus_source(settings_.name); }
 
   BusSettings settings_;
   Arbiter arbiter_;

@@ -21,9 +21,9 @@ std::uint32_t AxisImage::valid_bits() const {
   return bits & supported;
 }
 
-std::string log_source(AxisNumber number, const std::string& name) {
+LogSource log_source(AxisNumber number, const std::string& name, const std::string& bus) {
   const std::string plain = "axis " + std::to_string(number);
-  return name.empty() || name == plain ? plain : plain + " " + name;
+  return {.words = name.empty() || name == plain ? plain : plain + " " + name, .axis = number, .bus = bus};
 }
 
 bool shows_the_same(const AxisImage& a, const AxisImage& b) {

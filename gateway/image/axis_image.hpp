@@ -12,8 +12,10 @@
 
 #include "gateway/core/clock.hpp"
 #include "gateway/core/error.hpp"
+#include "gateway/core/log_source.hpp"
 #include "gateway/core/numbers.hpp"
 #include "gateway/core/rational.hpp"
+#include "gateway/image/axis_counts.hpp"
 #include "gateway/image/axis_record.hpp"
 #include "gateway/image/capabilities.hpp"
 #include "gateway/image/changes.hpp"
@@ -138,6 +140,8 @@ struct AxisImage : Capabilities {
   LatestResult latest;
   std::uint64_t unheeded_stop = 0;  ///< BatchResult::stop of the newest that was done, and whose motor turned on
   std::uint32_t sequence = 0;
+  /// One of an axis for the gateway's life: copies of the image share it.
+  std::shared_ptr<AxisCounts> counts = std::make_shared<AxisCounts>();
 
   [[nodiscard]] const Sample& operator[](Quantity q) const { return samples[static_cast<std::size_t>(q)]; }
   [[nodiscard]] Sample& operator[](Quantity q) { return samples[static_cast<std::size_t>(q)]; }
@@ -149,7 +153,7 @@ struct AxisImage : Capabilities {
 };
 
 /// Who speaks in log lines about an axis: "axis 3 lift", or "axis 3" where it has no name of its own.
-[[nodiscard]] std::string log_source(AxisNumber number, const std::string& name);
+[[nodiscard]] LogSource log_source(AxisNumber number, const std::string& name, const std::string& bus);
 
 /// Whether no client could tell the two apart: what `sequence` counts (design 3.2). Ages, times, how long the lease
 /// still runs, `sequence` itself and the latest result do not count.

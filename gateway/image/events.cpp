@@ -24,6 +24,7 @@ std::string_view text(EventKind kind) {
 }
 
 void EventRing::add(Instant at, AxisNumber axis, EventKind kind, std::uint32_t code, std::string text, bool asked_for) {
+  ++added_by_kind_[static_cast<std::size_t>(kind)];
   events_.push_back(Event{++added_, at, axis, kind, code, std::move(text), asked_for});
   if (on_event_) on_event_(events_.back());
 }

@@ -29,6 +29,7 @@ void ProcessImage::remove_axis(AxisNumber number) {
   nothing.sequence = (*place)->sequence + 1;
   nothing.record = (*place)->record;
   nothing.record.lost();
+  nothing.counts = (*place)->counts;
   **place = std::move(nothing);
   removed_.insert_or_assign(number, std::move(*place));
   axes_.erase(place);

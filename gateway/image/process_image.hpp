@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/core/time_counts.hpp"
 #include "gateway/image/axis_image.hpp"
 
 namespace axisgate {
@@ -40,8 +41,6 @@ enum class GatewayAlarm : std::uint8_t {
 
 /// Classes of exchanges, most urgent first: stop, fault cause, command, interactive, setup, poll.
 inline constexpr std::size_t kExchangeClasses = 6;
-/// Bucket i counts exchanges below 0.1 ms * 2^i, the last one all longer ones.
-inline constexpr std::size_t kTimeBuckets = 16;
 
 /// Registers 50000 + 100 * b; refreshed by the gateway before a request is answered.
 struct BusImage {
@@ -61,8 +60,10 @@ struct BusImage {
   std::uint32_t superseded = 0;
   std::uint32_t reconnects = 0;
   std::uint32_t echoes = 0;
-  /// In no register: how long the exchanges of each class took.
-  std::array<std::array<std::uint32_t, kTimeBuckets>, kExchangeClasses> times{};
+  // In no register.
+  std::array<TimeCounts, kExchangeClasses> times{};  ///< how long the exchanges of each class took
+  std::array<TimeCounts, kExchangeClasses> waits{};  ///< how long bus jobs of each class waited for their first one
+  Duration busy{};                                   ///< how long the wire was taken
 };
 
 struct GatewayImage {
@@ -77,8 +78,8 @@ inline constexpr std::size_t kMaxBuses = 100;  ///< 50000 + 100 * b must stay be
 class ProcessImage {
  public:
   /// Numbers are unique and within 1..499 (the configuration was checked).
-  /// One that there was before begins from scratch, but for `sequence` and its record: to every client its link was
-  /// lost.
+  /// One that there was before begins from scratch, but for `sequence`, its record and its counts: to every client its
+  /// link was lost.
   AxisImage& add_axis(AxisNumber number, std::string name, std::uint8_t bus);
   /// It shows nothing any more, and is not found.
   void remove_axis(AxisNumber number);

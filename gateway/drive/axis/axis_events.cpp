@@ -74,8 +74,7 @@ void AxisEvents::asked(const WriteBatch& asked, const WriteBatch& carried_out) {
   const bool ends_run = asked.command != carried_out.command && is_stop(carried_out.command);
   const bool foreign =
       holds_stop(carried_out) && guard_.ownership().owner() && !guard_.ownership().is_owner(asked.client);
-  const std::string who =
-      foreign ? "stopped by " + asked.life->name + ", which does not own the axis" : asked.life->name;
+  const std::string who = foreign ? "stopped by " + asked.life->name + std::string(kByAnother) : asked.life->name;
   const std::string how = ends_run ? fmt::format(" ({})", text(carried_out.command)) : std::string();
   event(EventKind::command, static_cast<std::uint32_t>(asked.command),
         fmt::format("{}: {}{}{}", who, command_text(core_, shown, image_.jog_velocity), how, left_out_text(*left_out)));

@@ -33,6 +33,7 @@ void AxisPublisher::publish(const Jog& jog, bool zero_may_move) {
   show_state(core_, image_);
   if (jog.active())
     image_.level_coils = static_cast<std::uint16_t>(image_.level_coils | (1U << jog_coil(jog.direction())));
+  count();
   const bool changed = !shows_the_same(before, image_);
   if (changed) {
     ++image_.sequence;
@@ -44,7 +45,19 @@ void AxisPublisher::publish(const Jog& jog, bool zero_may_move) {
   if (changed) tell_changes(before);
 }
 
+void AxisPublisher::count() {
+  AxisCounts& counts = *image_.counts;
+  const Instant now = core_.turn.now;
+  if (enabled_until_ != kNever) counts.enabled += now - enabled_until_;
+  enabled_until_ = image_.reachable() && image_.has(AxisInput::enabled) ? now : kNever;
+  const Sample& position = image_[Quantity::position_actual];
+  if (!image_.reachable() || !position.valid || position.at <= image_.zero_moved) return way_.lose();
+  counts.travel_microturns += way_.to(position.value, image_.units_per_rev.to_double());
+}
+
 void AxisPublisher::result(const WriteBatch& batch, CommandResult result, std::uint32_t detail, std::uint64_t stop) {
+  const bool over = result != CommandResult::none && result != CommandResult::pending;
+  if (over && batch.life && batch.command != Command::none) ++image_.counts->commands[{batch.command, result}];
   image_.latest = {result, detail, batch.command_id, stop, batch.life, subject_of(batch), core_.turn.now};
 }
 
@@ -76,7 +89,10 @@ void AxisPublisher::reset_asked(const std::string& by) {
 // Once its cause is settled, and once more for another one that comes later.
 void AxisPublisher::tell_fault(const AxisImage& before) {
   const bool fault = image_.has(AxisInput::fault);
-  if (fault && fault_.since == kLongAgo) fault_.since = core_.turn.now;
+  if (fault && fault_.since == kLongAgo) {
+    fault_.since = core_.turn.now;
+    ++image_.counts->faults;
+  }
   if (fault && !before.has(AxisInput::fault)) fault_.logged.reset();
   const auto code = static_cast<std::uint16_t>(image_[Quantity::error_code].value);
   if (fault && core_.fault.settled() && fault_.logged != code) {

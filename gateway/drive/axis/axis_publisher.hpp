@@ -9,6 +9,7 @@
 #include "gateway/drive/axis/axis_host.hpp"
 #include "gateway/drive/motion/jog.hpp"
 #include "gateway/drive/state/axis_core.hpp"
+#include "gateway/drive/watch/way_meter.hpp"
 
 namespace axisgate::drive {
 
@@ -38,13 +39,16 @@ class AxisPublisher {
   void tell_link(const AxisImage& before);
   void tell_changes(const AxisImage& before);
   void tell_fault(const AxisImage& before);
+  void count();
 
   AxisCore& core_;
   AxisImage& image_;
   AxisHost& host_;
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
-  bool zero_moves_ = false;  ///< when it was published last
+  bool zero_moves_ = false;         ///< when it was published last
+  Instant enabled_until_ = kNever;  ///< its time with torque is counted until then; kNever: it has none
+  WayMeter way_;
   std::shared_ptr<const ClientLife> owner_shown_{};
   struct Fault {
     Instant since = kLongAgo;               ///< kLongAgo: there is none

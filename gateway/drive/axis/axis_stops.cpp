@@ -52,6 +52,7 @@ Guard::Seen Axis::seen() const {
 }
 
 void Axis::settle() {
+  if (core_.turn.now >= guard_.ownership().until()) ++image_.counts->lease_expiries;  // the guard takes it up at once
   while (auto stop = guard_.due(seen())) {
     if (!stop->why.empty()) events_.event(stop->kind, stop->code, std::move(stop->why));
     if (stop->command == Command::none) continue;

@@ -6,6 +6,16 @@
 #include "gateway/upstream/dds_host/dds_program.hpp"
 
 namespace axisgate::dds {
+namespace {
+
+/// Of a client, as it wrote it; others say who is there.
+bool is_sample(const Record& record) {
+  return std::holds_alternative<CommandRecord>(record) || std::holds_alternative<ObjectRequestRecord>(record) ||
+         std::holds_alternative<HeartbeatRecord>(record) || std::holds_alternative<JointCommandsRecord>(record) ||
+         std::holds_alternative<RosActionRecord>(record);
+}
+
+}  // namespace
 
 DdsServer::DdsServer(boost::asio::io_context& io, Runtime& runtime, const DdsSettings& settings, ProcessImage& image,
                      const EventRing& events, CommandPort& commands, const Log& log, DdsReports reports)
@@ -32,9 +42,16 @@ host::Heard DdsServer::hear(Bytes packet) {
   return heard;
 }
 
+void DdsServer::take(Instant now) {
+  if (is_sample(heard_)) ++counts_.received;
+  session_.on_record(heard_, now);
+}
+
 std::optional<std::vector<Byte>> DdsServer::next(Instant now) {
   const auto record = session_.next(now);
-  return record ? std::optional(encode(*record)) : std::nullopt;
+  if (!record) return std::nullopt;
+  ++counts_.sent;
+  return encode(*record);
 }
 
 void DdsServer::on_name_taken(bool taken, const std::string& where) {

@@ -36,10 +36,16 @@ class DdsServer final : private host::HostedSession {
   /// As Keeper::stop().
   void stop() { keeper_.stop(); }
   [[nodiscard]] const host::Keeper& keeper() const { return keeper_; }
+  /// Samples given to axisgate-dds to publish, and samples of clients taken from it, since the start.
+  struct Counts {
+    std::uint64_t sent = 0;
+    std::uint64_t received = 0;
+  };
+  [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
   [[nodiscard]] host::Heard hear(Bytes packet) override;
-  void take(Instant now) override { session_.on_record(heard_, now); }
+  void take(Instant now) override;
   [[nodiscard]] bool has_room() const override { return session_.has_room(); }
   void on_link_up(Instant now) override { session_.on_link_up(now); }
   void on_link_down(Instant now) override { session_.on_link_down(now); }
@@ -54,6 +60,7 @@ class DdsServer final : private host::HostedSession {
   host::Keeper keeper_;
   DdsSession session_;
   Record heard_;  ///< the last one of its own
+  Counts counts_;
 };
 
 }  // namespace axisgate::dds

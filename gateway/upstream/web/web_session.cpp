@@ -19,6 +19,7 @@ WebSession::WebSession(Boot boot, ProcessImage& image, const EventRing& events, 
                        std::function<void()> wake)
     : boot_(std::move(boot)),
       image_(image),
+      ring_(events),
       figures_(std::move(figures)),
       events_(events),
       axes_({}, kAxisPeriod),
@@ -121,7 +122,40 @@ SamplesRecord WebSession::samples(Instant now) {
 Record WebSession::statistics(Instant now) {
   statistics_due_ = now + kStatisticsPeriod;
   look_for_other_info();
-  return statistics_record(image_, figures_(), events_.lost(), now);
+  Record record = statistics_record(image_, figures_(), {events_.lost(), ring_.added_by_kind()}, now);
+  queue_counts(now);
+  return record;
+}
+
+/// After the statistics, which have the image's rows of buses gathered.
+void WebSession::queue_counts(Instant now) {
+  CountsRecord record;
+  record.at = now.time_since_epoch().count();
+  std::size_t size = 0;
+  // One that begins with half of this has room for the largest row.
+  constexpr std::size_t kFull = kMaxPacket / 2;
+  constexpr std::size_t kBus = sizeof(BusCounts), kAxis = sizeof(AxisCountsRow), kCommand = sizeof(CommandCount);
+  const auto add = [&](auto& rows, auto row, std::size_t more) {
+    rows.push_back(std::move(row));
+    size += more;
+    if (size < kFull) return;
+    fixed_.emplace_back(record);
+    record.buses.clear();
+    record.axes.clear();
+    size = 0;
+  };
+  for (std::size_t place = 0; place < image_.buses.size(); ++place)
+    add(record.buses, bus_counts(image_.buses[place], place), kBus);
+  for (auto& [number, known] : known_) {
+    const AxisImage* const axis = image_.find(number);
+    if (axis == nullptr) continue;
+    AxisCountsRow row = axis_counts(*axis);
+    if (known.counts == row) continue;
+    known.counts = row;
+    const std::size_t more = kAxis + kCommand * row.commands.size();
+    add(record.axes, std::move(row), more);
+  }
+  if (size != 0) fixed_.emplace_back(std::move(record));
 }
 
 /// A drive may say, as it comes up, that its limits are others, or that it has less than its profile.

@@ -63,6 +63,7 @@ class WebSession {
     AxisFacts facts;
     AxisInfoRecord info;  ///< as it was sent
     SentValues values;
+    std::optional<AxisCountsRow> counts{};  ///< as they were sent
   };
   void begin(Instant now);
   [[nodiscard]] HelloRecord hello() const;
@@ -70,17 +71,19 @@ class WebSession {
   [[nodiscard]] SamplesRecord samples(Instant now);
   [[nodiscard]] Record statistics(Instant now);
   void look_for_other_info();
+  void queue_counts(Instant now);
 
   const Boot boot_;
   WebSettings settings_;
   WebFacts facts_;
   ProcessImage& image_;
+  const EventRing& ring_;
   std::function<ProcessFigures()> figures_;
   feed::EventFeed events_;
   feed::AxisFeed axes_;
   ChangeBoard::Reader changes_;
   std::map<AxisNumber, Known> known_;
-  std::deque<Record> fixed_;  ///< what is fixed, on its way: bounded by the configuration
+  std::deque<Record> fixed_;  ///< what is fixed, and counts, on their way: bounded by the configuration
   Instant samples_due_ = kLongAgo;
   Instant statistics_due_ = kLongAgo;
   std::uint32_t gaps_ = 0;

@@ -4,6 +4,7 @@
 // Never changes but by a reload.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,8 +23,15 @@ struct WebSettings {
   std::uint32_t max_connections = 100;
   std::uint32_t max_streams = 50;
   std::uint32_t memory_limit_mib = 128;  ///< of axisgate-web, which is ended beyond it
-  std::string recorder{};                ///< keys `captures` and `triggers` as JSON: nothing goes by them yet
+  std::string recorder = "{}";           ///< an object with the keys `captures` and `triggers`, for axisgate-web
   friend bool operator==(const WebSettings&, const WebSettings&) = default;
 };
+
+/// What the history gets: it leaves room for answers that are not taken yet.
+[[nodiscard]] inline std::uint32_t history_mib(const WebSettings& settings) {
+  return std::min(settings.history_mib, settings.memory_limit_mib / 2);
+}
+/// What a sample that differs from the one before takes of it, at most.
+inline constexpr double kHistoryBytes = 12.75;
 
 }  // namespace axisgate::web

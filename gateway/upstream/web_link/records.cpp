@@ -63,9 +63,20 @@ void members(Coder& coder, R& r) {
   coder.text(r.text, kMaxText);
 }
 
+/// Buckets and their sum.
+void put(auto& coder, auto& times) {
+  for (auto& count : times.counts) coder(count);
+  coder(times.sum_ns);
+}
+
 template <typename Coder, is<StatisticsRecord> R>
 void members(Coder& coder, R& r) {
-  coder(r.at, r.state, r.axes_online, r.alarms, r.events_lost, r.worst_turn_us, r.modbus_clients, r.modbus_refused);
+  coder(r.at, r.state, r.axes_online, r.alarms, r.events_lost, r.worst_turn_us, r.modbus_clients, r.modbus_refused,
+        r.modbus_requests, r.has_dds, r.dds_sent, r.dds_received);
+  for (auto& count : r.modbus_exceptions) coder(count);
+  put(coder, r.modbus_took);
+  put(coder, r.loop_late);
+  for (auto& count : r.events) coder(count);
   coder.list(r.programs, kMaxPrograms, [&](auto& program) {
     coder.text(program.name, kMaxName);
     coder(program.running, program.restarts);
@@ -73,8 +84,20 @@ void members(Coder& coder, R& r) {
   coder.list(r.buses, kMaxBuses, [&](auto& bus) {
     coder(bus.link, bus.load_permille, bus.cycle_ms, bus.queue_depth);
     for (auto& counter : bus.counters) coder(counter);
-    for (auto& of_class : bus.times)
-      for (auto& bucket : of_class) coder(bucket);
+  });
+}
+
+template <typename Coder, is<CountsRecord> R>
+void members(Coder& coder, R& r) {
+  coder(r.at);
+  coder.list(r.buses, kMaxBuses, [&](auto& bus) {
+    coder(bus.bus, bus.busy_us);
+    for (auto& of_class : bus.times) put(coder, of_class);
+    for (auto& of_class : bus.waits) put(coder, of_class);
+  });
+  coder.list(r.axes, kMaxAxisNumber, [&](auto& axis) {
+    coder(axis.axis, axis.faults, axis.lease_expiries, axis.enabled_ms, axis.travel_microturns);
+    coder.list(axis.commands, kMaxCommandCounts, [&](auto& each) { coder(each.command, each.result, each.count); });
   });
 }
 

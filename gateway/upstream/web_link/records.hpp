@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "gateway/core/numbers.hpp"
+#include "gateway/core/time_counts.hpp"
 #include "gateway/upstream/link/coder.hpp"
 
 namespace axisgate::web {
 
 /// First byte of each packet. Both ends are installed together: another version is another installation.
-inline constexpr std::uint8_t kLinkVersion = 1;
+inline constexpr std::uint8_t kLinkVersion = 2;
 using link::kMaxPacket;
 using link::kMillisecond;
 using link::kSecond;
@@ -31,8 +32,10 @@ inline constexpr std::size_t kMaxPrograms = 8;
 inline constexpr std::size_t kBusCounters = 11;
 /// Classes of exchanges, as the arbiter has them: stop, fault cause, command, interactive, setup, poll.
 inline constexpr std::size_t kExchangeClasses = 6;
-/// Exchange times: bucket i counts those below 0.1 ms * 2^i, the last one all longer ones (1.6 s and more).
-inline constexpr std::size_t kTimeBuckets = 16;
+inline constexpr std::size_t kEventKindsShown = 8;   ///< as EventKind
+inline constexpr std::size_t kExceptionsShown = 12;  ///< Modbus exceptions by their code, from 0 on
+/// Pairs of a command and its result, of one axis.
+inline constexpr std::size_t kMaxCommandCounts = 240;
 
 // --- From the gateway ------------------------------------------------------------------------------------------------
 
@@ -161,8 +164,6 @@ struct BusStatistics {
   /// requests, replies, timeouts, bad_frames, late_replies, dropped_bytes, refused, coalesced, superseded, reconnects,
   /// echoes
   std::array<std::uint32_t, kBusCounters> counters{};
-  /// By class, exchanges of each duration since the gateway's start.
-  std::array<std::array<std::uint32_t, kTimeBuckets>, kExchangeClasses> times{};
   friend bool operator==(const BusStatistics&, const BusStatistics&) = default;
 };
 
@@ -183,9 +184,54 @@ struct StatisticsRecord {
   std::uint32_t worst_turn_us = 0;  ///< how late the core's loop was at most, in the last second
   std::uint32_t modbus_clients = 0;
   std::uint32_t modbus_refused = 0;
+  // Since the gateway's start.
+  std::uint64_t modbus_requests = 0;
+  std::array<std::uint64_t, kExceptionsShown> modbus_exceptions{};
+  TimeCounts modbus_took{};  ///< from a request to its answer
+  TimeCounts loop_late{};    ///< how late the core's loop was, looked at four times a second
+  bool has_dds = false;      ///< the configuration has it
+  std::uint64_t dds_sent = 0;
+  std::uint64_t dds_received = 0;
+  std::array<std::uint64_t, kEventKindsShown> events{};  ///< by kind, those included that no page was sent
   std::vector<ProgramStatistics> programs;
   std::vector<BusStatistics> buses;
   friend bool operator==(const StatisticsRecord&, const StatisticsRecord&) = default;
+};
+
+/// Of one bus, since the gateway's start, by class of exchanges.
+struct BusCounts {
+  using ByClass = std::array<TimeCounts, kExchangeClasses>;
+  std::uint8_t bus = 0;       ///< position of its BusInfo
+  std::uint64_t busy_us = 0;  ///< how long an exchange was on the wire; on CAN, any frame
+  ByClass times{};            ///< how long exchanges took
+  ByClass waits{};            ///< how long bus jobs waited for their first one
+  friend bool operator==(const BusCounts&, const BusCounts&) = default;
+};
+
+struct CommandCount {
+  std::uint8_t command = 0;
+  std::uint8_t result = 0;  ///< as AxisSample::result
+  std::uint32_t count = 0;
+  friend bool operator==(const CommandCount&, const CommandCount&) = default;
+};
+
+/// Of one axis, since the gateway's start; counted where it happens.
+struct AxisCountsRow {
+  std::uint16_t axis = 0;
+  std::uint32_t faults = 0;
+  std::uint32_t lease_expiries = 0;
+  std::uint64_t enabled_ms = 0;
+  std::uint64_t travel_microturns = 0;
+  std::vector<CommandCount> commands;  ///< clients' commands that have ended
+  friend bool operator==(const AxisCountsRow&, const AxisCountsRow&) = default;
+};
+
+/// Once a second, in as many packets as it takes: all buses, and of the axes those whose counts are others.
+struct CountsRecord {
+  SteadyNs at = 0;
+  std::vector<BusCounts> buses;
+  std::vector<AxisCountsRow> axes;
+  friend bool operator==(const CountsRecord&, const CountsRecord&) = default;
 };
 
 // --- From axisgate-web -----------------------------------------------------------------------------------------------
@@ -206,7 +252,7 @@ struct LogRecord {
 
 /// In the order of their kinds on the wire.
 using Record = std::variant<HelloRecord, AxisInfoRecord, BusInfoRecord, FaultWordRecord, SamplesRecord, EventRecord,
-                            StatisticsRecord, ReadyRecord, LogRecord>;
+                            StatisticsRecord, CountsRecord, ReadyRecord, LogRecord>;
 
 /// Texts and lists longer than their bound are cut.
 [[nodiscard]] std::vector<Byte> encode(const Record& record);

@@ -24,6 +24,29 @@ TEST_F(ArbiterTest, grants_in_order_of_class_however_they_came) {
   EXPECT_EQ(arbiter.next_deadline(), kNever);
 }
 
+TEST_F(ArbiterTest, counts_how_long_each_has_waited_for_its_first_exchange) {
+  const auto of = [&](Priority priority) { return arbiter.waits().by_class()[static_cast<std::size_t>(priority)]; };
+  const JobId first = submit(command(0));
+  now += 3ms;
+  ASSERT_TRUE(arbiter.next(now));
+  arbiter.decline();
+  EXPECT_EQ(of(Priority::command).total(), 0U) << "it had nothing to send yet";
+  now += 2ms;
+  ASSERT_EQ(exchange(), first);
+  now += 10ms;
+  ASSERT_EQ(exchange(), first) << "its second one";
+  EXPECT_EQ(of(Priority::command).total(), 1U);
+  EXPECT_EQ(of(Priority::command).sum_ns, 5'000'000U);
+  arbiter.finish(first);
+  arbiter.set_poll_due(1, now + 1ms);
+  now += 5ms;
+  ASSERT_EQ(exchange(), 0u);
+  arbiter.set_poll_due(1, kLongAgo);
+  ASSERT_EQ(exchange(), 0u) << "before all that is overdue";
+  EXPECT_EQ(of(Priority::poll).total(), 2U);
+  EXPECT_EQ(of(Priority::poll).sum_ns, 4'000'000U);
+}
+
 TEST_F(ArbiterTest, what_stood_beside_a_stop_goes_before_what_came_later) {
   const JobId of_stop = submit(stop(0));
   ASSERT_EQ(exchange(), of_stop);

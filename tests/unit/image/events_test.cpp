@@ -22,8 +22,11 @@ TEST(EventRing, KeepsTheNewestThousandAndLetsAReaderCountWhatItMissed) {
   for (int i = 0; i < 1500; ++i) ring.add(Instant{}, 1, EventKind::command, 0, "");
   EXPECT_EQ(ring.events().size(), kMaxEvents);
   EXPECT_EQ(ring.added(), 1500U);
-  EXPECT_EQ(ring.events().front().number, 501U);
-  EXPECT_EQ(ring.events().back().number, 1500U);
+  ring.add(Instant{}, 1, EventKind::fault, 0, "");
+  EXPECT_EQ(ring.added_by_kind()[static_cast<std::size_t>(EventKind::command)], 1500U);
+  EXPECT_EQ(ring.added_by_kind()[static_cast<std::size_t>(EventKind::fault)], 1U);
+  EXPECT_EQ(ring.events().front().number, 502U);
+  EXPECT_EQ(ring.events().back().number, 1501U);
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ TEST(ProcessImage, AnAxisThatIsTakenOutIsSeenToGoAndWhatItDidHasEnded) {
   const std::uint32_t before = axis->sequence;
   const AxisRecord::Point since = axis->record.now();
   ChangeBoard::Reader reader(image.changes, [] {});
+  axis->counts->faults = 7;
   image.remove_axis(3);
   std::size_t marked = 0;
   reader.take([&](std::size_t number) { marked = number; });
@@ -46,6 +47,7 @@ TEST(ProcessImage, AnAxisThatIsTakenOutIsSeenToGoAndWhatItDidHasEnded) {
   EXPECT_EQ(&image.add_axis(3, "lift", 0), axis) << "whoever holds it may go on";
   EXPECT_EQ(axis->sequence, before + 1);
   EXPECT_TRUE(axis->record.interrupted(since, 1));
+  EXPECT_EQ(axis->counts->faults, 7U) << "no counter goes back";
 }
 
 TEST(ChangeBoard, EachReaderFindsEveryMarkThatItHasNotTakenAndIsWokenOnce) {

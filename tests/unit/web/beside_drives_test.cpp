@@ -46,7 +46,7 @@ Outcome run(Subject subject, bool page) {
   for (int i = 0; i < 300; ++i) step();
   EXPECT_TRUE(*enabled && *runs);
   out.statistics = stage.gateway().bus(0).statistics();
-  out.times = stage.gateway().bus(0).exchange_times().by_class();
+  out.times = stage.gateway().bus(0).times().exchanges.by_class();
   out.position = truth(stage, subject).position;
   return out;
 }
@@ -66,15 +66,12 @@ TEST_P(BesideDrives, APageCostsNoExchangeAndMovesNothing) {
 TEST_P(BesideDrives, EachExchangeIsCountedOnceByItsClass) {
   const Outcome without = run(GetParam(), false);
   std::uint64_t counted = 0;
-  for (const auto& of_class : without.times)
-    for (const std::uint32_t bucket : of_class) counted += bucket;
+  for (const TimeCounts& of_class : without.times) counted += of_class.total();
   // One may be on the wire.
   EXPECT_GE(counted + 1, without.statistics.requests);
   EXPECT_LE(counted, without.statistics.requests);
   for (const bus::Priority priority : {bus::Priority::command, bus::Priority::setup, bus::Priority::poll}) {
-    std::uint64_t of_class = 0;
-    for (const std::uint32_t bucket : without.times[static_cast<std::size_t>(priority)]) of_class += bucket;
-    EXPECT_GT(of_class, 0U) << static_cast<int>(priority);
+    EXPECT_GT(without.times[static_cast<std::size_t>(priority)].total(), 0U) << static_cast<int>(priority);
   }
 }
 

@@ -148,15 +148,37 @@ std::vector<Record> one_of_each() {
                     "halt",
                     16,
                     {{2, -5, 17}}};
-  BusStatistics bus{2, 100, 20, 3, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {}};
-  bus.times[5][15] = 12;
+  BusStatistics bus{2, 100, 20, 3, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}};
+  StatisticsRecord statistics;
+  statistics.at = 1;
+  statistics.state = 2;
+  statistics.axes_online = 3;
+  statistics.alarms = 4;
+  statistics.events_lost = 5;
+  statistics.worst_turn_us = 6;
+  statistics.modbus_clients = 7;
+  statistics.modbus_refused = 8;
+  statistics.modbus_requests = 9;
+  statistics.modbus_exceptions[11] = 10;
+  statistics.modbus_took.add(11ms);
+  statistics.loop_late.add(12ms);
+  statistics.has_dds = true;
+  statistics.dds_sent = 13;
+  statistics.dds_received = 14;
+  statistics.events[7] = 15;
+  statistics.programs = {{"axisgate-web", true, 9}};
+  statistics.buses = {bus};
+  BusCounts counts{1, 2, {}, {}};
+  counts.times[5].add(3s);
+  counts.waits[0].add(4ms);
   return {HelloRecord{"cell_7", "0.3", 77, 5, 1, 1, true, true},
           info,
           BusInfoRecord{1, "lift", "canopen", "can0", 719, 50},
           FaultWordRecord{"kinco-jd", 1, 3, true, 0x80000000, 0x3210, "DC voltage too high", "see the manual"},
           SamplesRecord{5, 6, {sample}},
           EventRecord{1, 2, 3, 4, 5, "text"},
-          StatisticsRecord{1, 2, 3, 4, 5, 6, 7, 8, {{"axisgate-web", true, 9}}, {bus}},
+          statistics,
+          CountsRecord{1, {counts}, {AxisCountsRow{3, 1, 2, 4, UINT64_MAX, {{1, 2, 3}}}}},
           ReadyRecord{"0.3", true},
           LogRecord{2, "line"}};
 }

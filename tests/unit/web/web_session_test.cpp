@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "gateway/image/command.hpp"
+
 namespace axisgate::web {
 namespace {
 
@@ -90,7 +92,7 @@ TEST_F(Pages, FirstGetWhatIsFixedThenEventsThenAllAxesThenStatistics) {
   start(2);
   std::vector<std::size_t> kinds;
   for (const Record& record : read()) kinds.push_back(record.index());
-  EXPECT_THAT(kinds, ElementsAre(0, 1, 1, 2, 3, 5, 4, 6));
+  EXPECT_THAT(kinds, ElementsAre(0, 1, 1, 2, 3, 5, 4, 6, 7));
 }
 
 TEST_F(Pages, AreToldOfWhichStartOfWhichGatewayTheyAre) {
@@ -233,10 +235,17 @@ TEST_F(Pages, GetTheFiguresOfTheGatewayAndItsBusesOnceASecond) {
   image.buses.resize(1);
   image.buses[0].link = 1;
   image.buses[0].echoes = 9;
-  image.buses[0].times[2][3] = 5;
+  image.buses[0].times[2].counts[3] = 5;
+  image.buses[0].busy = 2500us;
   image.refresh = [this] { image.gateway.axes_online = 2; };
   start(2);
-  auto statistics = read<StatisticsRecord>();
+  image.find(2)->counts->faults = 4;
+  std::vector<StatisticsRecord> statistics;
+  std::vector<CountsRecord> counts;
+  for (Record& record : read()) {
+    if (auto* const each = std::get_if<StatisticsRecord>(&record)) statistics.push_back(*each);
+    if (auto* const each = std::get_if<CountsRecord>(&record)) counts.push_back(*each);
+  }
   ASSERT_THAT(statistics, SizeIs(1));
   EXPECT_EQ(statistics[0].axes_online, 2);
   EXPECT_EQ(statistics[0].worst_turn_us, 1500U);
@@ -244,11 +253,53 @@ TEST_F(Pages, GetTheFiguresOfTheGatewayAndItsBusesOnceASecond) {
   EXPECT_THAT(statistics[0].programs, ElementsAre(ProgramStatistics{"axisgate-web", true, 1}));
   ASSERT_THAT(statistics[0].buses, SizeIs(1));
   EXPECT_EQ(statistics[0].buses[0].counters[10], 9U);
-  EXPECT_EQ(statistics[0].buses[0].times[2][3], 5U);
+  ASSERT_THAT(counts, SizeIs(1));
+  ASSERT_THAT(counts[0].buses, SizeIs(1));
+  EXPECT_EQ(counts[0].buses[0].times[2].counts[3], 5U);
+  EXPECT_EQ(counts[0].buses[0].busy_us, 2500U);
+  ASSERT_THAT(counts[0].axes, SizeIs(2));
+  EXPECT_EQ(counts[0].axes[1].faults, 4U);
   now += 999ms;
   EXPECT_THAT(read<StatisticsRecord>(), IsEmpty());
   now += 1ms;
   EXPECT_THAT(read<StatisticsRecord>(), SizeIs(1));
+}
+
+TEST_F(Pages, GetTheCountsOfAnAxisAgainWhenTheyAreOthers) {
+  start(3);
+  static_cast<void>(read());
+  image.find(2)->counts->commands[{Command::enable, CommandResult::done}] = 7;
+  now += 1s;
+  const auto counts = read<CountsRecord>();
+  ASSERT_THAT(counts, SizeIs(1));
+  ASSERT_THAT(counts[0].axes, SizeIs(1)) << "an axis that does nothing costs nothing";
+  EXPECT_EQ(counts[0].axes[0].axis, 2);
+  EXPECT_THAT(counts[0].axes[0].commands, ElementsAre(CommandCount{1, 2, 7}));
+}
+
+TEST_F(Pages, GetTheCountsOfAllThatThereCanBeInAsManyPacketsAsItTakes) {
+  image.buses.resize(kMaxBuses);
+  configure(kMaxAxisNumber);
+  for (const auto& axis : image.axes())
+    for (std::uint8_t command = 0; command < 20; ++command)
+      for (std::uint8_t result = 0; result < 12; ++result)
+        axis->counts->commands[{static_cast<Command>(command), static_cast<CommandResult>(result)}] = 1;
+  session.take({}, facts, now);
+  session.on_link_up(now);
+  std::size_t buses = 0, axes = 0;
+  for (const Record& record : read()) {
+    const auto packet = encode(record);
+    ASSERT_LE(packet.size(), kMaxPacket);
+    const Decoded decoded = decode(packet);
+    ASSERT_EQ(decoded.error, link::DecodeError::none);
+    const auto* const counts = std::get_if<CountsRecord>(&decoded.record);
+    if (counts == nullptr) continue;
+    buses += counts->buses.size();
+    axes += counts->axes.size();
+    for (const AxisCountsRow& each : counts->axes) EXPECT_THAT(each.commands, SizeIs(240));
+  }
+  EXPECT_EQ(buses, kMaxBuses);
+  EXPECT_EQ(axes, kMaxAxisNumber);
 }
 
 TEST_F(Pages, GetFiguresAlsoWhereSamplesAreAlwaysDue) {

@@ -17,6 +17,7 @@
 #include "gateway/upstream/modbus_tcp/client/listener_settings.hpp"
 #include "gateway/upstream/modbus_tcp/client/object_buffers.hpp"
 #include "gateway/upstream/modbus_tcp/client/peer.hpp"
+#include "gateway/upstream/modbus_tcp/client/request_figures.hpp"
 #include "gateway/upstream/modbus_tcp/client/row_memory.hpp"
 #include "gateway/upstream/modbus_tcp/wire/diagnostics.hpp"
 
@@ -128,6 +129,7 @@ class ClientRegistry : boost::noncopyable {
   [[nodiscard]] std::size_t hosts() const { return hosts_.size(); }
 
   DiagnosticCounters counters;  ///< function 8, of all sessions together
+  RequestFigures figures;
 
  private:
   struct Entry {

@@ -45,6 +45,7 @@ Onlooker Pipeline::onlooker(Instant now) const {
 void Pipeline::accept(const Frame& frame, Instant now, Instant came) {
   assert(entries_.size() < kMaxPipelined);
   ++context_.clients.counters.messages;
+  ++context_.clients.figures.requests;
   const auto view = UnitView::of(frame.unit, context_.settings, context_.image);
   std::variant<Request, ModbusException> decoded = decode_request(frame.pdu);
   Request* const request = std::get_if<Request>(&decoded);
@@ -54,7 +55,7 @@ void Pipeline::accept(const Frame& frame, Instant now, Instant came) {
   on_deadline(now);
   // The common case, and the only one that must be quick: a read with nothing before it.
   if (entries_.empty() && view && request != nullptr && !is_carried_out(*request)) {
-    return send(frame.transaction, frame.unit, answer(*request, *view, now));
+    return send(frame.transaction, frame.unit, answer(*request, *view, now), now - came);
   }
   Entry& entry = entries_.emplace_back();
   entry.number = ++last_number_;
@@ -331,7 +332,7 @@ void Pipeline::flush(Instant now) {
   while (!entries_.empty() && entries_.front().stage >= Stage::at_turn) {
     Entry& first = entries_.front();
     if (first.stage == Stage::at_turn) first.reply = answer(first, now);
-    send(first.transaction, first.unit, first.reply);
+    send(first.transaction, first.unit, first.reply, now - first.came);
     entries_.pop_front();
   }
 }
@@ -353,10 +354,13 @@ Pdu Pipeline::answer(const Request& request, const UnitView& view, Instant now) 
   return answer_identification(request, identification_objects(context_.image, context_.settings));
 }
 
-void Pipeline::send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply) {
+void Pipeline::send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply, Duration took) {
+  RequestFigures& figures = context_.clients.figures;
   ++context_.clients.counters.server_messages;
+  figures.took.add(took);
   if ((reply[0] & kExceptionBit) != 0) {
     ++context_.clients.counters.exceptions;
+    if (reply[1] < figures.exceptions.size()) ++figures.exceptions[reply[1]];
     log_exception(reply);
   }
   emit_(transaction, unit, reply);

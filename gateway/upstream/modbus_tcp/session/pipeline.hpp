@@ -96,7 +96,8 @@ class Pipeline : boost::noncopyable {
   [[nodiscard]] Pdu answer(const Entry& entry, Instant now) const;
   [[nodiscard]] Pdu answer(const Request& request, const UnitView& view, Instant now) const;
   [[nodiscard]] Onlooker onlooker(Instant now) const;
-  void send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply);
+  /// `took`: since it came.
+  void send(std::uint16_t transaction, std::uint8_t unit, const Pdu& reply, Duration took);
 
   SessionContext context_;
   Role role_;

@@ -41,14 +41,17 @@ std::string why_refused(const BlockWrite& block, std::uint16_t offset, const Out
 /// A tool in a loop must not fill the log.
 constexpr Duration kToldAgain = std::chrono::seconds(60);
 
-void log_once(const RefusedWrite& refused, const std::string& what, const std::string& why, Client& client, Instant now,
-              const Log& log) {
+/// @param axis 0: of none
+LogSource speaks_of(AxisNumber axis) { return {.words = "modbus", .axis = axis}; }
+
+void log_once(const RefusedWrite& refused, AxisNumber axis, const std::string& what, const std::string& why,
+              Client& client, Instant now, const Log& log) {
   if (client.refused == refused && now - client.refusal_logged_at < kToldAgain) return;
   if (!client.host->refused_lines.takes(now)) return;
   client.refused = refused;
   client.refusal_logged_at = now;
   log.write(
-      LogLevel::info, "modbus",
+      LogLevel::info, speaks_of(axis),
       client.life->name + ": " + what + " is refused: " + why + left_out_text(client.host->refused_lines.left_out()));
 }
 
@@ -75,7 +78,7 @@ void log_refused(const BlockWrite& block, const RefusedRow& refused, Client& cli
   if (axis.refused == refused) return;
   axis.refused = refused;
   const std::string what = block.coils ? "coil" : "row";
-  log.write(LogLevel::info, "modbus",
+  log.write(LogLevel::info, speaks_of(block.axis),
             client.life->name + ": a block write of " + std::to_string(block.count) +
                 (block.coils ? " coils from " : " registers from ") + std::to_string(block.address) +
                 " is refused at " + what + " " + std::to_string(refused.offset) + " of axis " +
@@ -88,7 +91,8 @@ void log_refused_write(const BlockWrite& write, const Outcome& outcome, Client& 
   const std::string where =
       write.axis == 0 ? std::string() : " of axis " + std::to_string(write.axis) + named(write, offset);
   const std::string kind = write.coils ? "coil " : "register ";
-  log_once({write.address, write.coils, outcome.code}, "a write to " + kind + std::to_string(write.address) + where,
+  log_once({write.address, write.coils, outcome.code}, write.axis,
+           "a write to " + kind + std::to_string(write.address) + where,
            why_refused(write, write.axis == 0 ? write.address : offset, outcome, true), client, now, log);
 }
 
@@ -98,8 +102,8 @@ void log_refused_object(const GeneralReference& reference, const Outcome& outcom
   const std::array<Byte, 1> sub{reference.subindex};
   std::string digits = hex_text(index);
   std::erase(digits, ' ');
-  log_once({reference.index, false, outcome.code}, "a write of object 0x" + digits + ":" + hex_text(sub) + " (43/13)",
-           modbus_text(outcome), client, now, log);
+  log_once({reference.index, false, outcome.code}, 0,
+           "a write of object 0x" + digits + ":" + hex_text(sub) + " (43/13)", modbus_text(outcome), client, now, log);
 }
 
 void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Client& client, const Log& log) {
@@ -108,7 +112,7 @@ void tell_dropped_half(AxisNumber axis, std::uint16_t row, const char* why, Clie
   const RefusedRow dropped{row, Errc::never_started};
   if (own.refused == dropped) return;
   own.refused = dropped;
-  log.write(LogLevel::info, "modbus",
+  log.write(LogLevel::info, speaks_of(axis),
             client.life->name + ": half of row " + std::to_string(row) + " of axis " + std::to_string(axis) +
                 named({.axis = axis}, row) + ", was written and is dropped: " + why);
 }
