@@ -15,6 +15,8 @@
 #include "gateway/commands/commission/commission_command.hpp"
 #include "gateway/commands/common/exit_codes.hpp"
 #include "gateway/commands/common/profile_folders.hpp"
+#include "gateway/commands/record/plan/request.hpp"
+#include "gateway/commands/record/record_command.hpp"
 #include "gateway/commands/run_command.hpp"
 #include "gateway/commands/scan/scan_command.hpp"
 #include "gateway/commands/top/top_command.hpp"
@@ -30,6 +32,7 @@ struct Parsed {
   CheckOptions check;
   MapOptions map;
   TopOptions top;
+  RecordOptions record;
   TopicsOptions topics;
   ProfileCommands profile;
   CommissionOptions commission;
@@ -128,8 +131,50 @@ void add_top(CLI::App& app, Parsed& parsed) {
       "one table, then the end; exit code 1: the gateway does not answer (for health checks)");
   command->footer(
       "A terminal of 80 columns is enough. Lines in red and yellow ask for attention; NO_COLOR=1 leaves colours out.\n"
+      "What an axis did before is in the history of the page: axisgate record AXIS --before 30.\n"
       "Example: axisgate top 127.0.0.1:1502");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.top); });
+}
+
+void add_record(CLI::App& app, Parsed& parsed) {
+  CLI::App* command =
+      app.add_subcommand("record", "Record what axes do, as CSV, from the history of a running gateway's page");
+  command->add_option("AXIS", parsed.record.axes, "axis numbers")
+      ->required()
+      ->check(CLI::Range(1, 499).description(""));
+  CLI::Option* const seconds = add_number(*command, "--seconds", parsed.record.seconds, 1, 3600, "record for so long");
+  add_number(*command, "--before", parsed.record.before, 1, 3600, "instead: the seconds before now, at once")
+      ->excludes(seconds)
+      ->default_str("");
+  command
+      ->add_option("--series", parsed.record.series,
+                   "values by their names in the API, with commas between, such as velocity_rpm,following_error_rev; "
+                   "without it position_rev, velocity_rpm, torque_percent, current_a, axis_state, or of many axes the "
+                   "first of them")
+      ->check(CLI::Validator(record::series_mistake, ""))
+      ->type_name("NAME,...");
+  // The one form there is; named, it stays what it is where another comes.
+  command->add_flag_callback(
+      "--csv", [] {}, "as CSV (RFC 4180), as without it");
+  command->add_option("--output", parsed.record.output, "write to this file instead of standard output")
+      ->type_name("FILE");
+  CLI::Option* const url = command->add_option("--url", parsed.record.url, "the page")
+                               ->check(CLI::Validator(record::page_url_mistake, ""))
+                               ->type_name("URL")
+                               ->capture_default_str();
+  command->add_option("--config", parsed.record.config, "the gateway's configuration file: where its page is")
+      ->excludes(url)
+      ->type_name("CONFIG");
+  add_profiles(*command, parsed);
+  command->footer(
+      "It needs the page (\"web\" in the configuration), which keeps the last minute or more of every axis, and causes "
+      "no "
+      "exchange on\na bus. At most 16 series at once. A row is an instant: its time in UTC, the values, and what "
+      "happened "
+      "then; what is not\nknown is empty. Ctrl-C ends it with what there is by then.\n"
+      "Exit code 1: there is no page or no such axis, or the history did not hold all of it, which is said.\n"
+      "Example: axisgate record 1 2 --seconds 20 --output lift.csv; axisgate record 1 --before 30 > stopped.csv");
+  command->callback([&parsed] { choose_with_folders(parsed, parsed.record); });
 }
 
 void add_topics(CLI::App& app, Parsed& parsed) {
@@ -276,6 +321,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_check(app, parsed);
   add_map(app, parsed);
   add_top(app, parsed);
+  add_record(app, parsed);
   add_manual_commands(app, parsed.manual, parsed.chosen);
   add_topics(app, parsed);
   add_profile_commands(app, parsed.profile, parsed.profiles, parsed.chosen);

@@ -37,7 +37,7 @@ bool given(const Profile& profile, const QuantityRow& row, std::string_view prot
   if (quantity == nullptr) return false;
   const auto place = [&](const std::string& object) { return has_place(profile, object, protocol); };
   return std::ranges::any_of(quantity->objects, place) ||
-         std::ranges::any_of(quantity->bits, [&](const profile::BitsSpec& bits) { return place(bits.object); });
+         std::ranges::any_of(quantity->bits, [&](const profile::BitsSpec& bits) { return place(bits.name); });
 }
 
 void print_protocol(const Profile& profile, const std::string& protocol, const profile::ProtocolSpec& facts) {

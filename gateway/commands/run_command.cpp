@@ -115,6 +115,7 @@ int serve(config::LoadedConfig loaded, const RunOptions& options) {
                                 [&](bool taken) { gateway.report_name_taken(taken); }});
   }
   Duration worst_turn{};
+  TimeCounts loop_late;
   std::optional<web::WebServer> web;
   const auto figures = [&] {
     const auto& counters = server.counters();
@@ -122,6 +123,11 @@ int serve(config::LoadedConfig loaded, const RunOptions& options) {
                             counters.open,
                             static_cast<std::uint32_t>(counters.refused_not_allowed + counters.refused_full),
                             {}};
+    out.modbus_requests = clients.figures.requests;
+    out.modbus_exceptions = clients.figures.exceptions;
+    out.modbus_took = clients.figures.took;
+    out.loop_late = loop_late;
+    if (dds) out.dds = {dds->counts().sent, dds->counts().received};
     if (dds) out.programs.push_back(statistics_of(dds->keeper()));
     out.programs.push_back(statistics_of(web->keeper()));
     return out;
@@ -144,6 +150,7 @@ int serve(config::LoadedConfig loaded, const RunOptions& options) {
                                 [&](const std::string& file) { gateway.report_file_changed(file); });
   process::LoopWatch watch(runtime, [&](Duration late) {
     worst_turn = std::max(worst_turn, late);
+    loop_late.add(late);
     gateway.report_loop_delay(late);
   });
   process::Service service(runtime, [&](Duration slack) { return gateway.all_turn(slack); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/commands/profile/base_profile.hpp"
 
-#include "gateway/profile/read/profile_layers.hpp"
+#include "gateway/profile/read/profile_loader.hpp"
 
 namespace axisgate::commands {
 

@@ -31,7 +31,7 @@ struct Node {
   void add(const profile::Profile& like) {
     for (const profile::Object& object : like.objects)
       if (const auto at = object.places.find("canopen"); at != object.places.end() && object.readable)
-        add(at->second.address, at->second.type.value_or(object.type).size);
+        add(at->second.address, at->second.size);
   }
 };
 

@@ -54,7 +54,7 @@ std::vector<Asked> run(SerialScanPlan& plan, std::vector<Station> stations = {})
         const auto place = object.places.find(speech.protocol);
         if (place == object.places.end() || !(place->second.address == exchange->object)) continue;
         result.code = Errc::ok;
-        result.fields.push_back({exchange->object, object.type_at(place->second).size, 1});
+        result.fields.push_back({exchange->object, place->second.size, 1});
         break;
       }
     }

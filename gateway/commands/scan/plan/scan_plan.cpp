@@ -21,7 +21,7 @@ bool is_makers_own(ObjectAddress address) { return address.index >= 0x2000 && ad
 bool is_cia402(const FoundNode& node) { return node.device_type && (*node.device_type & 0xFFFFU) == 0x0192U; }
 
 const profile::Place* place_of(const profile::Object& object) {
-  return object.readable && !object.part ? object.place("canopen") : nullptr;
+  return object.readable && !object.is_part() ? object.place("canopen") : nullptr;
 }
 
 std::optional<std::uint32_t> number_of(const bus::ExchangeResult& result) {
@@ -200,7 +200,7 @@ void ScanPlan::judge(const profile::Profile& profile, bool widths_reported) {
     if (place == nullptr) continue;
     const auto tried = std::ranges::find(tried_, place->address, &Tried::address);
     if (tried == tried_.end()) continue;
-    const std::uint8_t size = object.type_at(*place).size;
+    const std::uint8_t size = place->size;
     const auto fits_in = [&](std::uint8_t answered) {
       return answered == size || (object.any_width && answered < size) || (!widths_reported && answered > size);
     };

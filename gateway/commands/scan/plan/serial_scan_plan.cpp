@@ -25,7 +25,8 @@ bool closes_the_line(const ObjectAddress& address, const std::string& protocol) 
 /// Where a profile's object is read on this protocol; null: it is not, or a read of it is not documented to be
 /// harmless.
 const profile::Place* read_place(const profile::Object& object, const std::string& protocol) {
-  const profile::Place* place = object.readable && !object.trigger && !object.part ? object.place(protocol) : nullptr;
+  const profile::Place* place =
+      object.readable && !object.trigger && !object.is_part() ? object.place(protocol) : nullptr;
   return place == nullptr || closes_the_line(place->address, protocol) ? nullptr : place;
 }
 
@@ -63,7 +64,7 @@ SerialScanPlan::Protocol SerialScanPlan::protocol_of(const std::string& name,
     for (const profile::Object& object : profile.objects) {
       const profile::Place* place = read_place(object, name);
       if (place != nullptr && out.objects.size() < kMostTried && !has_address(out.objects, place->address))
-        out.objects.push_back({place->address, object.type_at(*place).size, false});
+        out.objects.push_back({place->address, place->size, false});
     }
   }
   out.knocks = knocks_for(out.profiles, out.objects, name);
