@@ -25,7 +25,7 @@ from stage import DRIVES, PORTS, Gateway, Simulator, bus, drive, main
 DRIVES["ld2"] = ("leadshine-ld2-can", {})
 LINES = {"lift": "jd@1", "feeder": "md@1", "turntable": "rtu:id286pro@1", "press": "lawicel:ld2@1", "wheels": "lawicel:keya-can@1"}
 NAMES = {1: "lift", 2: "<b>feeder</b>", 3: "turntable", 4: "press", 5: "left wheel", 6: "right wheel"}
-PAGES = ("axes", "axis/1", "axis/3", "axis/5", "buses", "events", "map", "words", "about")
+PAGES = ("axes", "axis/1", "axis/3", "axis/5", "scope/s=1.velocity_rpm,5.velocity_rpm,3.position_rev,1.axis_state", "captures", "buses", "events", "map", "words", "about")
 RPM = 1000
 
 
@@ -207,6 +207,11 @@ class PageStory(UndisturbedTest):
         """As a link does it: the page stays the same."""
         self.browser.run("location.hash = arguments[0]", page)
         self.browser.until(f"page {page}", lambda: self.browser.run("return document.body.dataset.page") == page.split("/")[0] and self.lives())
+
+    def assert_axe_finds_nothing(self):
+        """On the page as it stands, into which axe-core was put."""
+        found = self.browser.run_later("const found = await axe.run(document, {resultTypes: ['violations']}); done(JSON.stringify(found.violations.map(v => [v.id, v.help, v.nodes.map(n => n.html.slice(0, 200))])))")
+        self.assertEqual(json.loads(found), [])
 
     def figures(self, axis, what):
         """What the line of an axis shows of a value: (text, quality)."""

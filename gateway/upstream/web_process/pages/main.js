@@ -9,8 +9,8 @@ import { clock, uptime } from "./format.js";
 import { Store } from "./state/store.js";
 import { Stream } from "./stream.js";
 
-const PAGES = ["axes", "axis", "buses", "events", "map", "words", "about"]; // ./page/NAME.js, fetched when it is opened first
-const IN_HEADER = [["axes", "Axes"], ["buses", "Buses"], ["events", "Events"], ["map", "Map"], ["words", "Words"], ["about", "About"]];
+const PAGES = ["axes", "axis", "scope", "captures", "buses", "events", "map", "words", "about"]; // ./page/NAME.js, fetched when it is opened first
+const IN_HEADER = [["axes", "Axes"], ["scope", "Scope"], ["captures", "Captures"], ["buses", "Buses"], ["events", "Events"], ["map", "Map"], ["words", "Words"], ["about", "About"]];
 const TICK_MS = 250; // ages and clocks go on without a frame
 const RETRY_MS = 1000;
 
@@ -22,6 +22,8 @@ const main = document.getElementById("content");
 const context = {
   store,
   stream,
+  /** Something is to be drawn. */
+  soon: () => soon(),
   /** What is shown is what is. */
   seen: () => stream.state === "live" && store.joined,
 };

@@ -54,6 +54,7 @@ export class Stream {
     this.refusal = null; // {status, detail}
     this.last_id = null;
     this.wait = FIRST_WAIT_MS;
+    this.query = ""; // what is asked of it beside what every page needs
     this.frames = 0;
     this.bytes = 0;
   }
@@ -69,6 +70,15 @@ export class Stream {
   look() {
     if (document.visibilityState === "hidden") this.close("hidden");
     else if (!this.abort) this.open();
+  }
+
+  /** Of another page: "series=1.velocity_rpm", "". What is known stays until the same stream, asked so, has told of it anew. */
+  ask(query) {
+    if (query === this.query) return;
+    this.query = query;
+    if (!this.abort) return;
+    this.abort.abort();
+    this.open(true);
   }
 
   tell(state) {
@@ -92,16 +102,16 @@ export class Stream {
     this.tell(state);
   }
 
-  async open() {
+  async open(goes_on = false) {
     clearTimeout(this.timer);
     const abort = new AbortController();
     this.abort = abort;
-    this.store.begin();
+    if (!goes_on) this.store.begin();
     let wait = null;
     let was_refused = false;
     try {
       const headers = this.last_id ? { "Last-Event-ID": this.last_id } : {};
-      const answer = await fetch("api/v1/stream", { headers, signal: abort.signal, cache: "no-store" });
+      const answer = await fetch(`api/v1/stream${this.query ? `?${this.query}` : ""}`, { headers, signal: abort.signal, cache: "no-store" });
       if (answer.ok) await this.read(answer.body.getReader());
       else was_refused = true;
       if (was_refused) wait = await this.refused(answer);

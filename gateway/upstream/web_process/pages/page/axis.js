@@ -11,6 +11,8 @@ import { event_rows } from "../part/event_rows.js";
 import { DASH, clock, duration, hex, number, spoken, told, value_text } from "../format.js";
 import { age_of, reading, tone_of_link, tone_of_state } from "../state/judge.js";
 import { SPAN_MS } from "../state/history.js";
+import { to_hash } from "../state/scope_link.js";
+import { MAIN } from "../state/series.js";
 
 const READOUTS = ["position_rev", "velocity_rpm", "torque_percent", "current_a", "following_error_rev", "dc_voltage_v", "drive_temperature_c", "motor_temperature_c"];
 const INPUTS = ["online", "ready", "enabled", "fault", "warning", "target_reached", "homed", "moving", "limit_active", "quick_stop_active", "following_error", "stop_latched"];
@@ -81,7 +83,8 @@ function fault_panel() {
   const title = el("strong"), codes = el("span", { class: "codes" });
   const cause = el("dd"), remedy = el("dd"), since = el("dd");
   const rows = [["Cause", cause], ["Remedy", remedy], ["Since", since]].map(([term, what]) => el("div", {}, el("dt", {}, term), what));
-  const node = el("section", { class: "fault", id: "fault", "aria-label": "Fault" }, glyph("error stop", "big"), el("div", {}, el("h2", {}, "Fault: ", title, " ", codes), el("dl", { class: "facts" }, rows)));
+  const before = el("a", { class: "button", id: "before" }, glyph("previous"), "What happened before");
+  const node = el("section", { class: "fault", id: "fault", "aria-label": "Fault" }, glyph("error stop", "big"), el("div", {}, el("h2", {}, "Fault: ", title, " ", codes), el("dl", { class: "facts" }, rows), before));
   return {
     node,
     show(axis) {
@@ -89,6 +92,8 @@ function fault_panel() {
       node.hidden = !fault;
       if (!fault) return;
       put(title, fault.text || "its cause is being read");
+      before.hidden = !axis.capture;
+      set(before, "href", axis.capture ? `#captures/${encodeURIComponent(axis.capture)}` : null);
       put(codes, [hex(fault.code, 4), fault.vendor_code ? `drive's own ${hex(fault.vendor_code, 4)}` : ""].filter(Boolean).join(", "));
       [[cause, fault.cause], [remedy, fault.remedy], [since, fault.since ? clock(fault.since) : ""]].forEach(([what, text]) => {
         say(what, text);
@@ -149,7 +154,8 @@ function plots(store) {
   const behind = el("details", {}, el("summary", {}, "The same as a table"), table);
   const position_box = el("figure", {}, el("figcaption", {}, "Position ", el("span", { class: "unit" }, "rev")), position.node);
   const velocity_box = el("figure", {}, el("figcaption", {}, "Velocity ", el("span", { class: "unit" }, "rpm")), velocity.node);
-  const node = section("The last minute, as this page has seen it", velocity_box, position_box, behind);
+  const more = el("a", { class: "hint" }, "In the scope");
+  const node = section("The last minute, as this page has seen it", more, velocity_box, position_box, behind);
   node.classList.add("plots");
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   let drawn = 0, told_at = 0;
@@ -160,6 +166,7 @@ function plots(store) {
       if (calm.matches && now - drawn < 1000) return;
       drawn = now;
       const history = store.history(axis.axis);
+      set(more, "href", to_hash({ series: MAIN.filter((name) => !axis.supported || axis.supported.includes(name)).map((name) => `${axis.axis}.${name}`), span_ms: SPAN_MS }));
       velocity_box.hidden = Boolean(axis.supported) && !axis.supported.includes("velocity_rpm");
       position_box.hidden = Boolean(axis.supported) && !axis.supported.includes("position_rev");
       velocity.show(history, now);

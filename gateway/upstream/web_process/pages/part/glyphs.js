@@ -33,6 +33,8 @@ const SHAPES = {
   up_down: [["s", "M5 6.5 8 3.5l3 3M5 9.5l3 3 3-3"]],
   ascending: [["s", "M4.5 9.5 8 6l3.5 3.5"]],
   descending: [["s", "M4.5 6.5 8 10l3.5-3.5"]],
+  pause: [["f", "M4 3h3v10H4zM9 3h3v10H9z"]],
+  play: [["f", "M4.5 2.5 13 8l-8.5 5.5z"]],
   previous: [["s", "M10 3.5 5.5 8l4.5 4.5"]],
   next: [["s", "M6 3.5 10.5 8 6 12.5"]],
 };

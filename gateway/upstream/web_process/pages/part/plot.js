@@ -5,6 +5,7 @@
 import { el } from "./dom.js";
 import { number } from "../format.js";
 import { SPAN_MS } from "../state/history.js";
+import { steps } from "../state/scale.js";
 
 let colours = null;
 window.addEventListener("themechange", () => { colours = null; });
@@ -78,16 +79,6 @@ export function spark(series) {
       line(pen, history, series, now - SPAN_MS, (at) => width * (1 - (now - at) / SPAN_MS), (value) => middle - (value / most) * (middle - 2));
     },
   };
-}
-
-/** Round steps of which three to seven fit. */
-function steps(low, high) {
-  const raw = (high - low) / 7;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 2.5, 5, 10].map((n) => n * power).find((n) => n >= raw);
-  const found = [];
-  for (let at = Math.ceil(low / step - 1e-9) * step; at <= high + step * 1e-9; at += step) found.push(Math.abs(at) < step * 1e-9 ? 0 : at);
-  return { found, decimals: Math.max(0, Math.min(6, -Math.floor(Math.log10(step) + 1e-9) + (step / power === 2.5 ? 1 : 0))) };
 }
 
 const LEFT = 64, BELOW = 20, ABOVE = 8, RIGHT = 10;

@@ -46,7 +46,7 @@ export class Store {
     else if (kind === "buses") this.buses = data.buses ?? [];
     else if (kind === "gateway") this.take_gateway(data);
     else if (kind === "event") this.take_events([data]);
-    else return;
+    else if (kind !== "scope" && kind !== "capture") return; // those are the pages' that listen
     for (const listener of this.listeners) listener(kind, data);
   }
 
