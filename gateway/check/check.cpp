@@ -183,6 +183,15 @@ void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
   add_lines(out, master_lines(whole));
 }
 
+/// Of all axes together.
+std::size_t values_of(const std::vector<std::vector<model::DriveModel>>& buses) {
+  std::size_t out = 0;
+  for (const auto& drives : buses)
+    for (const model::DriveModel& drive : drives)
+      for (const model::AxisModel& axis : drive.axes) out += axis.bindings.size();
+  return out;
+}
+
 }  // namespace
 
 CheckReport report(const config::LoadedConfig& loaded) {
@@ -210,7 +219,7 @@ CheckReport report(const config::LoadedConfig& loaded) {
   }
   if (config.web) {
     out += fmt::format("\n{}\n", web_title(*config.web));
-    add_lines(out, web_lines(*config.web));
+    add_lines(out, web_lines(*config.web, values_of(loaded.models)));
   }
   out += "\nNo function of this gateway is a safety function: emergency stop and STO are wired.\n";
   for (const std::string& warning : timeout_warnings(loaded, budgets)) out += "warning: " + warning + "\n";

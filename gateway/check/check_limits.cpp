@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "gateway/profile/resolve/limit_keys.hpp"
+#include "gateway/profile/resolve/profile_resolve.hpp"
 
 namespace axisgate::check {
 namespace {

@@ -39,8 +39,8 @@ namespace axisgate::check {
 
 /// "Web: http://127.0.0.1:8080/".
 [[nodiscard]] std::string web_title(const web::WebSettings& settings);
-/// Who may look and from where, and what it may take.
-[[nodiscard]] ReportLines web_lines(const web::WebSettings& settings);
+/// Who may look and from where, how far back it shows and what it may take. @param values of all axes together
+[[nodiscard]] ReportLines web_lines(const web::WebSettings& settings, std::size_t values);
 
 // --- An axis ---------------------------------------------------------------------------------------------------------
 

@@ -13,9 +13,8 @@ namespace axisgate::config {
 namespace {
 
 void check_schema(const nlohmann::json& document, ConfigFaults& faults) {
-  const auto schema = nlohmann::json::parse(gateway_schema_text());
-  for (const profile::SchemaFault& fault : profile::validate(document, schema))
-    faults.add(fault.pointer, fault.message);
+  static const profile::JsonSchema kSchema(gateway_schema_text());
+  for (const profile::SchemaFault& fault : kSchema.faults_in(document)) faults.add(fault.pointer, fault.message);
 }
 
 /// Per-axis unit ids have room for 254 axes.

@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "gateway/config/config_endpoint.hpp"
 #include "gateway/config/config_sections.hpp"
@@ -78,6 +80,11 @@ std::uint32_t number(const JsonNode& node, std::string_view key, std::uint32_t o
   return static_cast<std::uint32_t>(node.integer(key).value_or(otherwise));
 }
 
+constexpr std::int64_t kLastBit = 31;
+/// Quantities whose bits mean something.
+constexpr std::array<std::string_view, 6> kWords = {"statusword",   "mode",   "error_code",
+                                                    "vendor_error", "inputs", "outputs"};
+
 /// What stands beside `is` must be what it is judged by, and no more.
 void check_trigger(const JsonNode& node, const Config& config, ConfigFaults& faults) {
   if (faults.within(node.pointer())) return;
@@ -91,6 +98,18 @@ void check_trigger(const JsonNode& node, const Config& config, ConfigFaults& fau
     else
       faults.add(node.pointer(key), fmt::format("\"{0}\" takes no \"{1}\": remove it", is, key));
   }
+  const auto decimal = [](const Rational& number) {
+    return static_cast<double>(number.numerator()) / static_cast<double>(number.denominator());
+  };
+  if (const auto min = node["min"].rational(), max = node["max"].rational();
+      outside && min && max && decimal(*max) < decimal(*min))
+    faults.add(node.pointer("max"), "is below \"min\": nothing would be between");
+  const auto bit = node.integer("value");
+  if (is.starts_with("bit_") && node.has("value") && (!bit || *bit < 0 || *bit > kLastBit))
+    faults.add(node.pointer("value"), fmt::format("must be a bit's number, 0 to {}", kLastBit));
+  if (is.starts_with("bit_") && std::ranges::find(kWords, node.text("quantity")) == kWords.end())
+    faults.add(node.pointer("is"), fmt::format("\"{}\" asks for a bit, and {} is a number: bits are in {}", is,
+                                               node.text("quantity"), fmt::join(kWords, ", ")));
   const auto number = node.integer("axis");
   bool there = false;
   each_axis(config.buses, [&](const AxisConfig& axis) { there = there || axis.number == number; });
@@ -98,15 +117,19 @@ void check_trigger(const JsonNode& node, const Config& config, ConfigFaults& fau
     faults.add(node.pointer("axis"), fmt::format("there is no axis {} in this configuration", number.value_or(0)));
 }
 
+/// For axisgate-web, which goes by it.
 std::string read_recorder(const JsonNode& node, const Config& config, ConfigFaults& faults) {
-  std::string out;
   for (const JsonNode& trigger : node["triggers"].items()) check_trigger(trigger, config, faults);
-  for (const char* const key : {"captures", "triggers"}) {
-    if (!node.has(key)) continue;
-    out += node[key].dump() + "\n";
-    faults.warn(node.pointer(key), "nothing is captured in this version yet");
-  }
-  return out;
+  const JsonNode captures = node["captures"];
+  if (const auto folder = captures.string("folder"); folder && !folder->starts_with('/'))
+    faults.add(captures.pointer("folder"),
+               fmt::format("'{}' would be looked for wherever the gateway is started: write the whole path, "
+                           "\"/var/lib/axisgate/captures\"",
+                           *folder));
+  std::vector<std::string> given;
+  for (const char* const key : {"captures", "triggers"})
+    if (node.has(key)) given.push_back(fmt::format("\"{}\": {}", key, node[key].dump()));
+  return fmt::format("{{{}}}", fmt::join(given, ", "));
 }
 
 }  // namespace
@@ -125,6 +148,10 @@ std::optional<WebSettings> read_web(const JsonNode& root, const Config& config, 
   settings.max_connections = number(node, "max_connections", settings.max_connections);
   settings.max_streams = number(node, "max_streams", settings.max_streams);
   settings.memory_limit_mib = number(node, "memory_limit_mb", settings.memory_limit_mib);
+  if (web::history_mib(settings) < settings.history_mib && node.has("history_mb"))
+    faults.warn(node.pointer("history_mb"),
+                fmt::format("half of memory_limit_mb is the most that the history gets: it has {} MiB",
+                            web::history_mib(settings)));
   settings.recorder = read_recorder(node, config, faults);
   return settings;
 }

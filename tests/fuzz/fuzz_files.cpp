@@ -9,7 +9,6 @@
 #include "gateway/profile/eds/eds.hpp"
 #include "gateway/profile/eds/eds_compare.hpp"
 #include "gateway/profile/make/from_form.hpp"
-#include "gateway/profile/read/profile_layers.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/fuzz/targets.hpp"

@@ -44,24 +44,25 @@ WebRead read_requests(std::string_view bytes, std::size_t at_once) {
   return out;
 }
 
-const web::Picture& picture() {
-  static const web::Picture kPicture = [] {
-    web::Picture out;
+const web::Stores& stores() {
+  static const web::Stores kStores = [] {
+    constexpr std::size_t kHistoryBytes = std::size_t{1} << 20;
+    web::Stores out(kHistoryBytes);
     web::HelloRecord hello;
     hello.axes = hello.buses = 1;
     web::AxisInfoRecord axis;
     axis.axis = 1;
     for (const web::Record& record : {web::Record(hello), web::Record(axis), web::Record(web::BusInfoRecord{})})
-      must(out.take(record, 1), "a record of the gateway is taken");
+      must(out.take(record, {1, 0}), "a record of the gateway is taken");
     return out;
   }();
-  return kPicture;
+  return kStores;
 }
 
 void must_be_an_answer(const std::string& target) {
   Request request;
   request.target = target;
-  const web::Answer answer = web::answer(request, picture(), web::Served{}, {1, 0});
+  const web::Answer answer = web::answer(request, stores(), web::Served{}, {1, 0});
   if (const auto* stream = std::get_if<web::StreamRequest>(&answer.what)) {
     must(stream->period_ms >= web::kLeastPeriodMs && stream->period_ms <= web::kMostPeriodMs,
          "a period has its bounds");
@@ -73,6 +74,12 @@ void must_be_an_answer(const std::string& target) {
   must(header.find('\n') != std::string::npos && header.ends_with("\r\n\r\n"), "a header ends");
   must(header.find("nosniff") != std::string::npos, "safety is on every answer");
   if (answer.refused) must(nlohmann::json::accept(response.body()), "a problem is JSON, whatever was asked");
+  std::uint64_t taken = 0;
+  while (response.pieces) {
+    const std::string piece = response.pieces();
+    if (piece.empty()) break;
+    must((taken += piece.size()) <= web::kMaxPieces, "an answer in pieces ends");
+  }
 }
 
 void web_requests(Bytes content) {

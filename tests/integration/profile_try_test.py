@@ -39,21 +39,18 @@ class Trying(Story):
         self.program.name = "axisgate profile try"
         return self.keep(self.program)
 
-    def shown(self):
-        return " ".join(self.program.text().split())
+    def shown(self, since=0):
+        return " ".join(self.program.text()[since:].split())
 
     def asked(self):
         """The next prompt that nobody has answered; None where it has ended."""
         def look():
-            prompts = list(PROMPT.finditer(self.shown()))
-            if len(prompts) > self.answered:
-                return prompts[self.answered]
-            return self.program.process.poll() is not None
+            return PROMPT.search(self.shown(self.answered)) or self.program.process.poll() is not None
         found = until("it asks, or ends", look)
         return None if found is True else found
 
     def say(self, line):
-        self.answered += 1
+        self.answered = len(self.program.text())
         self.program.press(line.encode() + b"\n")
 
     def go_on(self, last="nothing"):
@@ -128,9 +125,13 @@ class RightProfile(Trying):
         self.go_on("moves")
         before = self.position()
         self.say("1 moves")
-        while abs(self.position() - before) < TURN // 4:
-            if PROMPT.findall(self.shown())[self.answered:]:
+
+        def has_turned():
+            if PROMPT.search(self.shown(self.answered)):
                 self.say("yes")
+            return abs(self.position() - before) >= TURN // 4
+
+        until("a quarter of a turn", has_turned)
         end()
         code = self.program.ended()
         self.assert_stands_disabled()

@@ -142,6 +142,76 @@ TEST(AxisgateWebBounds, RefuseAnswersWhileOthersTakeNone) {
   EXPECT_GE(json::parse(answered.body)["web"]["refused"]["memory"].get<int>(), 1);
 }
 
+TEST(AxisgateWebBounds, AnswerScrapesOfAllAxesThatThereCanBeWithLittleMemory) {
+  Web web("\"memory_limit_mb\": 48, \"history_mb\": 4");
+  web.tell_of_the_gateway(kMaxAxisNumber);
+  SamplesRecord record;
+  record.at = now();
+  for (std::uint16_t number = 1; number <= kMaxAxisNumber; ++number) {
+    AxisSample sample;
+    sample.axis = number;
+    sample.lease_ms = sample.result_age_ms = UINT32_MAX;
+    record.axes.push_back(sample);
+  }
+  web.tell(record);
+  Client client(web.port());
+  const std::string last = "axisgate_axis_age_seconds{axis=\"499\"}";
+  Answered answered;
+  // What is told may be read a moment later than what is asked.
+  for (int scrapes = 0; scrapes < 20 || answered.status != 200 || answered.body.find(last) == std::string::npos;
+       ++scrapes) {
+    answered = client.get("/metrics");
+    ASSERT_TRUE(answered.status == 200 || answered.status == 429) << scrapes;  // it asks as fast as it can
+  }
+  EXPECT_GT(answered.body.size(), 500'000U);
+}
+
+/// Samples of one value that is always another one, some thousand in a packet.
+void tell_many(Web& web, int values, SteadyNs at, int& number) {
+  constexpr int kSamplesOfAxis = 32, kSamplesOfPacket = 3200;
+  constexpr std::uint32_t kBetween = 10;
+  SamplesRecord record;
+  record.at = at;
+  for (int i = 0; i < kSamplesOfPacket; ++i) {
+    if (i % kSamplesOfAxis == 0) {
+      AxisSample& sample = record.axes.emplace_back();
+      sample.axis = 1;
+      sample.supported = sample.valid = UINT32_MAX;
+    }
+    const auto name = static_cast<std::uint8_t>(i < values ? i : 0);
+    record.axes.back().values.push_back(
+        {name, -2'000'000'000 + ++number, static_cast<std::uint32_t>(kSamplesOfPacket - i) * kBetween});
+  }
+  web.tell(record);
+}
+
+TEST(AxisgateWebBounds, BreakATableOffThatIsLongerThan64Mib) {
+  Web web;
+  web.tell_of_the_gateway();
+  std::string series;
+  constexpr int kSeries = 16;
+  for (const char* const name :
+       {"statusword", "mode", "position_rev", "velocity_rpm", "torque_percent", "current_a", "following_error_rev",
+        "error_code", "vendor_error", "inputs", "outputs", "drive_temperature_c", "motor_temperature_c", "dc_voltage_v",
+        "controlword", "mode_asked"})
+    series += (series.empty() ? "1." : ",1.") + std::string(name);
+  constexpr std::size_t kMost = std::size_t{64} << 20;
+  Client client(web.port());
+  Client::Whole whole;
+  int number = 0;
+  SteadyNs at = now() - 100 * kSecond;
+  // Each row has some 200 bytes.
+  while (whole.body.size() < kMost - 64 * 1024) {
+    for (int i = 0; i < 110; ++i) tell_many(web, kSeries, at += 40 * kMillisecond, number);
+    client.send(get_of("/api/v1/history.csv?from=-3600&series=" + series));
+    ASSERT_EQ(client.answer().status, 200U);
+    whole = client.chunks();
+    ASSERT_EQ(whole.complete, whole.body.size() < kMost - 64 * 1024);
+  }
+  EXPECT_LE(whole.body.size(), kMost);
+  EXPECT_TRUE(client.closed());
+}
+
 TEST(AxisgateWebBounds, EndAPageThatNeverReadsAndKeepOthersServed) {
   Web web;
   web.tell_of_the_gateway();

@@ -10,6 +10,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/web_process/web.hpp"
 
@@ -76,6 +77,22 @@ Answered Client::answer() {
   return out;
 }
 
+Client::Whole Client::chunks() {
+  constexpr int kHex = 16;
+  Whole out;
+  for (;;) {
+    const auto length = until("\r\n");
+    if (!length) return out;
+    const std::size_t size = std::stoul(*length, nullptr, kHex);
+    while (bytes_.size() < size + 2)
+      if (!more()) return out;
+    out.body += bytes_.substr(0, size);
+    bytes_.erase(0, size + 2);
+    if (size == 0) out.complete = true;
+    if (size == 0) return out;
+  }
+}
+
 Answered Client::get(const std::string& target, const std::string& fields) {
   send(get_of(target, fields));
   return answer();
@@ -89,6 +106,12 @@ std::optional<nlohmann::json> Client::event(const std::string& name) {
     const std::size_t data = frame->find("data: ");
     return nlohmann::json::parse(frame->substr(data + 6));
   }
+}
+
+std::string Client::rest() {
+  while (more()) {
+  }
+  return std::exchange(bytes_, {});
 }
 
 bool Client::closed() {

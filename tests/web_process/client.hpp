@@ -29,10 +29,18 @@ class Client {
   bool send(std::string_view bytes);
   /// The next answer, with its body.
   [[nodiscard]] Answered answer();
+  /// The body of an answer that comes in chunks, put together, as far as it came.
+  struct Whole {
+    std::string body;
+    bool complete = false;
+  };
+  [[nodiscard]] Whole chunks();
   /// A GET and its answer.
   [[nodiscard]] Answered get(const std::string& target, const std::string& fields = "");
   /// Data of the next such event of a stream; none: the stream has ended.
   [[nodiscard]] std::optional<nlohmann::json> event(const std::string& name);
+  /// All that comes until the other side closes.
+  [[nodiscard]] std::string rest();
   /// Until the other side closes: true.
   [[nodiscard]] bool closed();
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "gateway/upstream/link/exit_codes.hpp"
@@ -46,6 +48,57 @@ TEST(AxisgateWeb, StreamsWhatChanges) {
       if (axis.contains("values") && axis["values"].contains("position_rev")) position = axis["values"]["position_rev"];
   }
   EXPECT_EQ(position, 2.5);
+}
+
+TEST(AxisgateWeb, BringsLinesToFiftyPages) {
+  Web web;
+  web.tell_of_the_gateway();
+  std::vector<std::unique_ptr<Client>> pages;
+  for (int i = 0; i < 50; ++i) {
+    pages.push_back(std::make_unique<Client>(web.port()));
+    pages.back()->send(get_of("/api/v1/stream?period_ms=50&series=1.position_rev,1.axis_state"));
+    ASSERT_TRUE(pages.back()->event("hello"));
+  }
+  for (int i = 1; i <= 20; ++i) web.tell_position(i);
+  for (const auto& page : pages) {
+    std::vector<double> turns;
+    while (turns.size() < 20) {
+      const auto scope = page->event("scope");
+      ASSERT_TRUE(scope);
+      const json samples = scope->at("series").value("1.position_rev", json::array());
+      for (const json& each : samples)
+        if (!each[1].is_null()) turns.push_back(each[1].get<double>());
+    }
+    for (int i = 1; i <= 20; ++i) EXPECT_EQ(turns.at(static_cast<std::size_t>(i - 1)), i);
+  }
+}
+
+TEST(AxisgateWeb, SendsALongTableInPiecesOfOneConnection) {
+  Web web;
+  web.tell_of_the_gateway();
+  constexpr int kSamples = 5000;
+  for (int i = 1; i <= kSamples; ++i) web.tell_position(i);
+  Client client(web.port(), 4096);
+  const std::string table = "/api/v1/history.csv?series=1.position_rev";
+  const std::string newest = "," + std::to_string(kSamples) + ",\r\n";
+  Client::Whole whole;
+  do {
+    const Answered header = client.get(table);
+    ASSERT_EQ(header.status, 200U);
+    EXPECT_THAT(header.header, HasSubstr("Transfer-Encoding: chunked\r\n"));
+    whole = client.chunks();
+    EXPECT_TRUE(whole.complete);
+  } while (whole.body.find(newest) == std::string::npos);
+  EXPECT_GE(std::ranges::count(whole.body, '\n'), kSamples);
+  EXPECT_EQ(client.get("/api/v1/words").status, 200U) << "the connection goes on behind it";
+
+  Client old(web.port());
+  old.send("GET " + table + " HTTP/1.0\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(old.answer().header.find("Transfer-Encoding"), std::string::npos) << "HTTP/1.0 knows no chunks";
+  EXPECT_THAT(old.rest(), testing::StartsWith("time,1.position_rev,event\r\n"));
+  client.send("HEAD " + table + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(client.answer().status, 200U);
+  EXPECT_EQ(client.get("/api/v1/words").status, 200U) << "a HEAD has no body";
 }
 
 TEST(AxisgateWeb, SaysThatTheGatewayIsNotSeenWhenItStands) {

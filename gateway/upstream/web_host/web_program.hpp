@@ -15,7 +15,7 @@ namespace axisgate::web {
 inline constexpr host::HostedProgram kProgram{
     "axisgate-web",
     "AXISGATE_WEB_PROGRAM",
-    "the CMake option AXISGATE_WEB=ON (Debian package libseccomp-dev)",
+    "the CMake option AXISGATE_WEB=ON (Debian packages libseccomp-dev and prometheus-cpp-dev)",
     "web",
     10,
     "cannot listen on the address of `web`: it is in use, or needs rights, which its own line of the log names",

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <variant>
 
+#include "gateway/upstream/web_process/capture/capture_settings.hpp"
 #include "gateway/upstream/web_process/http/settings.hpp"
 
 namespace axisgate::web {
@@ -15,6 +16,7 @@ namespace axisgate::web {
 struct ServeOptions {
   int link_fd = -1;
   Settings settings{};
+  CaptureSettings captures{};
 };
 
 /// An exit code where there is nothing to do: a message or the help was printed.
@@ -22,5 +24,7 @@ struct ServeOptions {
 
 /// Settings, or what is wrong with them. @param json the resolved section "web"
 [[nodiscard]] std::variant<Settings, std::string> parse_settings(std::string_view json);
+/// What of it is of captures and triggers.
+[[nodiscard]] std::variant<CaptureSettings, std::string> parse_captures(std::string_view json);
 
 }  // namespace axisgate::web

@@ -32,7 +32,7 @@ int run(const ServeOptions& options) {
   raise_descriptors(options.settings.max_connections);
   Link link(options.link_fd, "axisgate-web");
   try {
-    return serve(options.settings, link);
+    return serve(options.settings, options.captures, link);
   } catch (const program::StartError& error) {
     link.send(LogRecord{static_cast<std::uint8_t>(LogLevel::error), error.what()});
     return error.exit_code;

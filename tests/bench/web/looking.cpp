@@ -43,10 +43,11 @@ std::string Looking::get(std::uint16_t port, std::string_view path) {
   return answer;
 }
 
-Looking::Looking(std::uint16_t port, int pages, int period_ms)
+Looking::Looking(std::uint16_t port, int pages, int period_ms, const std::string& series)
     : seen_(static_cast<std::size_t>(pages)), left_(seen_.size()) {
   for (int page = 0; page < pages; ++page)
-    sockets_.push_back(connected(port, "/api/v1/stream?period_ms=" + std::to_string(period_ms)));
+    sockets_.push_back(connected(
+        port, "/api/v1/stream?period_ms=" + std::to_string(period_ms) + (series.empty() ? "" : "&series=" + series)));
   if (pages == 0) return;
   thread_ = std::thread([this] { read(); });
   if (all_seen_.get_future().wait_for(kPatience) != std::future_status::ready)

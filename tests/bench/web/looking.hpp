@@ -18,7 +18,8 @@ namespace axisgate::bench {
 class Looking {
  public:
   /// Returns when each has had its first `axes` event. @param period_ms of the streams, 50..5000
-  Looking(std::uint16_t port, int pages, int period_ms);
+  /// @param series of each stream, with commas between; empty: none
+  Looking(std::uint16_t port, int pages, int period_ms, const std::string& series = "");
   ~Looking();
   Looking(const Looking&) = delete;
   Looking& operator=(const Looking&) = delete;

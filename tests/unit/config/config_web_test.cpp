@@ -29,7 +29,7 @@ class Web : public ::testing::Test {
     }
     loaded = std::move(std::get<LoadedConfig>(result));
     said.clear();
-    check::add_lines(said, check::web_lines(settings()));
+    check::add_lines(said, check::web_lines(settings(), 64));
   }
   [[nodiscard]] const web::WebSettings& settings() const { return loaded.config.web.value(); }
   [[nodiscard]] std::string warnings() const {
@@ -67,14 +67,25 @@ TEST_F(Web, TakesEachKey) {
   EXPECT_EQ(settings().memory_limit_mib, 64U);
 }
 
-TEST_F(Web, SaysThatNothingIsCapturedYet) {
+TEST_F(Web, SaysHowManySecondsTheHistoryHolds) {
+  load("{}");
+  EXPECT_THAT(said, HasSubstr("617 s where each of 64 values is another one in each sample"));
+  load(R"({"history_mb": 200})");
+  EXPECT_THAT(warnings(), HasSubstr("half of memory_limit_mb is the most that the history gets: it has 64 MiB"));
+  EXPECT_THAT(said, HasSubstr("822 s where"));
+}
+
+TEST_F(Web, HandsOverWhatIsCaptured) {
+  load("{}");
+  EXPECT_EQ(settings().recorder, "{}");
   load(R"({"captures": {"before_s": 60, "after_s": 0, "keep": 1, "folder": null}, "triggers": [
            {"name": "hard stop", "axis": 1, "quantity": "following_error_rev", "is": "above", "value": 0.2},
-           {"name": "a bit", "axis": 1, "quantity": "inputs", "is": "bit_set", "value": 3},
+           {"name": "a bit", "axis": 1, "quantity": "inputs", "is": "bit_set", "value": 31},
            {"name": "a band", "axis": 1, "quantity": "velocity_rpm", "is": "outside", "min": -10, "max": 10.5},
            {"name": "another", "axis": 1, "quantity": "error_code", "is": "changes"}]})");
-  EXPECT_THAT(warnings(), HasSubstr("/web/captures: nothing is captured in this version yet"));
-  EXPECT_THAT(warnings(), HasSubstr("/web/triggers: nothing is captured in this version yet"));
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  EXPECT_THAT(settings().recorder, HasSubstr(R"("keep":1)"));
+  EXPECT_THAT(settings().recorder, HasSubstr(R"("triggers": [{)"));
 }
 
 TEST_F(Web, SaysAtEachStartWhoMayLookWithoutEncryption) {

@@ -26,7 +26,8 @@ TEST(WebProgram, IsGivenItsSectionOfTheConfigurationWithAllDefaults) {
   ASSERT_TRUE(arguments[2].starts_with(option));
   EXPECT_EQ(json::parse(arguments[2].substr(option.size())),
             json::parse(R"({"listen": ["127.0.0.1:8080"], "hosts": [], "insecure": false, "allow": ["127.0.0.1/32"],
-                            "max_connections": 100, "max_streams": 50, "memory_limit_mb": 128})"));
+                            "max_connections": 100, "max_streams": 50, "history_mb": 48,
+                            "memory_limit_mb": 128})"));
 }
 
 TEST(WebProgram, IsGivenEachSetting) {
@@ -38,11 +39,14 @@ TEST(WebProgram, IsGivenEachSetting) {
   settings.max_connections = 10;
   settings.max_streams = 5;
   settings.memory_limit_mib = 64;
+  settings.recorder = R"({"captures": {"keep": 3}, "triggers": []})";
   const std::string text = serve_arguments(settings, 3)[2];
   EXPECT_EQ(json::parse(text.substr(text.find('=') + 1)),
             json::parse(R"({"listen": ["[::]:80"], "hosts": ["press.example"], "insecure": true,
                             "allow": ["192.168.1.0/24", "fd00::/8"], "max_connections": 10, "max_streams": 5,
-                            "memory_limit_mb": 64})"));
+                            "history_mb": 32, "memory_limit_mb": 64,
+                            "captures": {"keep": 3}, "triggers": []})"))
+      << "the history has half of the memory at most";
 }
 
 TEST(WebProgram, HasWordsOfItsOwnForWhatItCannotServe) {

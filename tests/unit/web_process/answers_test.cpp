@@ -11,8 +11,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string detail_of(const Answer& answer) { return body_of(answer)["detail"].get<std::string>(); }
-
 EventRecord event_of(std::uint64_t number, std::uint16_t axis, EventKind kind, std::uint32_t code = 0) {
   return {number, kStarted, axis, static_cast<std::uint8_t>(kind), code, "text " + std::to_string(number)};
 }

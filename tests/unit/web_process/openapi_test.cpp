@@ -54,6 +54,7 @@ class Everything {
  public:
   Everything() {
     AxisSample sample = standing(1);
+    told.tell(sample);  // that it faults later makes a capture
     sample.axis_state = static_cast<std::uint8_t>(AxisState::error_stop);
     sample.inputs = bits_of({AxisInput::online, AxisInput::fault});
     sample.alarms = bit(AxisAlarm::stop_latched);
@@ -65,9 +66,13 @@ class Everything {
     StatisticsRecord told_of = statistics();
     told_of.alarms = 1;
     told.tell(told_of);
-    told_of.at += kSecond;
-    told_of.buses[0].times[5][3] = 10;
-    told.tell(told_of);
+    CountsRecord counts;
+    counts.at = told_of.at;
+    counts.buses.resize(1);
+    told.tell(counts);
+    counts.at += kSecond;
+    counts.buses[0].times[5].counts[3] = 10;
+    told.tell(counts);
     EventRecord event;
     event.number = 1;
     event.axis = 1;
@@ -98,6 +103,9 @@ const std::vector<Example>& examples() {
                                               {"/api/v1/explain", "/api/v1/explain?q=0x3210"},
                                               {"/api/v1/map", "/api/v1/map"},
                                               {"/api/v1/health", "/api/v1/health"},
+                                              {"/api/v1/history", "/api/v1/history?series=1.position_rev"},
+                                              {"/api/v1/captures", "/api/v1/captures"},
+                                              {"/api/v1/captures/{id}", "/api/v1/captures/42.10000"},
                                               {"/api/v1/openapi.json", "/api/v1/openapi.json"}};
   return kExamples;
 }
@@ -123,21 +131,24 @@ TEST(Openapi, SaysHowARefusalIs) {
 
 TEST(Openapi, HasEveryPathThatIsAnswered) {
   for (const auto& [path, of_path] : openapi()["paths"].items())
-    EXPECT_TRUE(path == "/api/v1/stream" || std::ranges::find(examples(), path, &Example::path) != examples().end())
+    EXPECT_TRUE(path == "/api/v1/stream" || path.ends_with(".csv") ||
+                std::ranges::find(examples(), path, &Example::path) != examples().end())
         << path;
-  EXPECT_EQ(openapi()["paths"].size(), examples().size() + 1);
+  EXPECT_EQ(openapi()["paths"].size(), examples().size() + 3);
 }
 
 TEST(Openapi, NamesTheParametersThatAreTaken) {
   Everything all;
   for (const auto& [path, of_path] : openapi()["paths"].items()) {
     std::string named;
-    for (const Schema& each : of_path["get"].value("parameters", Schema::array()))
+    for (const Schema& each : expanded(of_path["get"].value("parameters", Schema::array())))
       if (each["in"] == "query") named += (named.empty() ? "" : ", ") + each["name"].get<std::string>();
     std::string target = path;
     if (const auto example = std::ranges::find(examples(), path, &Example::path); example != examples().end())
       target = example->target.substr(0, example->target.find('?'));
-    const std::string detail = body_of(asked(all.told, target + "?unknown=1"))["detail"].get<std::string>();
+    if (path == "/api/v1/captures/{id}.csv") target = "/api/v1/captures/42.10000.csv";
+    const std::string needed = named.starts_with("series") && path != "/api/v1/stream" ? "&series=1.position_rev" : "";
+    const std::string detail = body_of(asked(all.told, target + "?unknown=1" + needed))["detail"].get<std::string>();
     EXPECT_EQ(detail, named.empty() ? "unknown: there are no parameters here"
                                     : "unknown: there is no such parameter; there are: " + named)
         << path;
@@ -148,6 +159,7 @@ TEST(Openapi, SaysHowTheEventsOfAStreamAre) {
   Everything all;
   StreamRequest request;
   request.after = 0;
+  request.series = {{1, static_cast<std::uint8_t>(Quantity::velocity_actual)}};
   Stream stream(request, all.told.picture(), kStarted);
   Feed feed;
   const Schema& events = openapi()["paths"]["/api/v1/stream"]["get"]["responses"]["200"]["x-events"];
@@ -162,9 +174,10 @@ TEST(Openapi, SaysHowTheEventsOfAStreamAre) {
       EXPECT_EQ(mistakes(events.at(event), Schema::parse(line.substr(6))), "") << event;
     }
   };
-  for (const SteadyNs later : {SteadyNs{0}, kSecond, 5 * kSecond}) {
+  for (const SteadyNs later : {SteadyNs{0}, kSecond, 5 * kSecond, 7 * kSecond}) {
     feed.update(all.told.picture(), Served{}, at(later));
-    look(stream.next(all.told.picture(), feed, at(later)));
+    look(stream.next(all.told.stores(), feed, at(later)));
+    static_cast<void>(all.told.stores().turn(at(later + kSecond)));  // one capture is complete
   }
   look(Stream::bye("why"));
   EXPECT_EQ(seen.size(), events.size()) << "each of them came";

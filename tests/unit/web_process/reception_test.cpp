@@ -108,7 +108,7 @@ TEST(Reception, KeepsNoMoreThanMaxStreams) {
   Settings settings;
   settings.max_streams = 1;
   Reception reception(settings);
-  const auto ask = [&] { return reception.answer(get("/api/v1/stream"), kHere, told.picture(), at(0)); };
+  const auto ask = [&] { return reception.answer(get("/api/v1/stream"), kHere, told.stores(), at(0)); };
   EXPECT_TRUE(std::holds_alternative<StreamRequest>(ask().what));
   EXPECT_EQ(status_of(ask()), 503U);
   reception.end_stream();
@@ -120,7 +120,7 @@ TEST(Reception, AnswersAHeadForAStreamWithoutOne) {
   Reception reception{Settings{}};
   Request request = get("/api/v1/stream");
   request.method = Request::Method::head;
-  EXPECT_EQ(status_of(reception.answer(request, kHere, told.picture(), at(0))), 200U);
+  EXPECT_EQ(status_of(reception.answer(request, kHere, told.stores(), at(0))), 200U);
   EXPECT_EQ(reception.served().streams, 0U);
 }
 
@@ -128,7 +128,7 @@ TEST(Reception, CountsEveryRefusalByItsReason) {
   Told told;
   Reception reception{Settings{}};
   const auto ask = [&](const Request& request) {
-    return status_of(reception.answer(request, kHere, told.picture(), at(0)));
+    return status_of(reception.answer(request, kHere, told.stores(), at(0)));
   };
   Request wrong_host = get("/api/v1/gateway");
   wrong_host.host = "evil.example";
@@ -146,7 +146,7 @@ TEST(Reception, AnswersTooManyRequestsWith429) {
   Reception reception{Settings{}};
   unsigned status = 200;
   for (int i = 0; i < 101; ++i)
-    status = status_of(reception.answer(get("/api/v1/health"), kHere, told.picture(), at(0)));
+    status = status_of(reception.answer(get("/api/v1/health"), kHere, told.stores(), at(0)));
   EXPECT_EQ(status, 429U);
 }
 

@@ -44,7 +44,7 @@ class Page {
     feed_.update(told_.picture(), served_, at(after_start));
     std::vector<std::string> events;
     for (;;) {
-      text_ = stream_.next(told_.picture(), feed_, at(after_start));
+      text_ = stream_.next(told_.stores(), feed_, at(after_start));
       if (text_.empty()) return events;
       bytes_ += text_.size();
       longest_ = std::max(longest_, text_.size());
@@ -240,11 +240,120 @@ TEST(Stream, SaysEachSecondThatItLives) {
   Page page(told);
   page.read(0);
   EXPECT_THAT(page.read(20 * kMillisecond), IsEmpty());
-  Picture nothing;
-  Stream stream({}, nothing, kStarted);
+  const Stores nothing(1024);
+  Stream stream({}, nothing.picture, kStarted);
   Feed feed;
   EXPECT_EQ(stream.next(nothing, feed, at(999 * kMillisecond)), "");
   EXPECT_EQ(stream.next(nothing, feed, at(kSecond)), ":\n\n");
+}
+
+/// What a page with one line has been sent of it.
+struct Drawn {
+  explicit Drawn(Told& told, std::vector<Series> series = {{1, static_cast<std::uint8_t>(Quantity::velocity_actual)}})
+      : told_of(told), scope(std::move(series), kStarted) {}
+  /// How many samples came; -1: no event.
+  int read(SteadyNs after_start) {
+    const std::string text = scope.next(told_of.stores(), at(after_start));
+    if (text.empty()) return -1;
+    last = Json::parse(text);
+    longest = std::max(longest, text.size());
+    int out = 0;
+    for (const auto& [name, samples] : last["series"].items()) {
+      if (name == "1.velocity_rpm")
+        for (const Json& each : samples) all.push_back(each[1].is_null() ? -1.0 : each[1].get<double>());
+      out += static_cast<int>(samples.size());
+    }
+    return out;
+  }
+  Told& told_of;
+  Scope scope;
+  Json last;
+  std::vector<double> all;
+  std::size_t longest = 0;
+};
+
+void tell_velocity(Told& told, std::int32_t velocity, SteadyNs after_start, std::uint32_t age_us = 0) {
+  AxisSample sample = standing(1);
+  sample.values.clear();
+  set(sample, Quantity::velocity_actual, velocity, age_us);
+  told.tell(sample, after_start);
+}
+
+TEST(Scope, SendsEachSampleOnce) {
+  Told told;
+  Drawn drawn(told);
+  EXPECT_EQ(drawn.read(0), -1);
+  tell_velocity(told, 1000, 10 * kMillisecond, 500);
+  tell_velocity(told, 2000, 20 * kMillisecond, 500);
+  EXPECT_EQ(drawn.read(20 * kMillisecond), 2);
+  EXPECT_EQ(drawn.last.dump(),
+            R"({"from":"2026-11-28T20:40:00.009500Z","series":{"1.velocity_rpm":[[0,1.0],[10,2.0]]}})");
+  EXPECT_EQ(drawn.read(25 * kMillisecond), -1);
+  // One that was right before the event was made, and came afterwards.
+  tell_velocity(told, 3000, 30 * kMillisecond, 8000);
+  EXPECT_EQ(drawn.read(30 * kMillisecond), 1);
+  for (int i = 4; i < 100; ++i) tell_velocity(told, i * 1000, i * 10 * kMillisecond);
+  EXPECT_EQ(drawn.read(kSecond), 96) << "a slow page is sent all of it, later";
+  ASSERT_EQ(drawn.all.size(), 99U);
+  for (std::size_t i = 0; i < drawn.all.size(); ++i) EXPECT_EQ(drawn.all[i], static_cast<double>(i + 1));
+}
+
+TEST(Scope, BeginsAGapWithNull) {
+  Told told;
+  Drawn drawn(told);
+  tell_velocity(told, 1000, 10 * kMillisecond);
+  AxisSample mute = standing(1);
+  mute.valid = 0;
+  told.tell(mute, 20 * kMillisecond);
+  drawn.read(30 * kMillisecond);
+  tell_velocity(told, 2000, 40 * kMillisecond);
+  drawn.read(40 * kMillisecond);
+  EXPECT_THAT(drawn.all, ElementsAre(1.0, -1.0, 2.0));
+}
+
+TEST(Scope, LosesNoSpikeWhereMoreCameThanAFrameTakes) {
+  Told told;
+  std::vector<Series> series;
+  for (std::uint8_t name = 0; name < 16; ++name) series.push_back({1, name});
+  Drawn drawn(told, series);
+  for (int i = 1; i <= 1000; ++i) {
+    AxisSample sample = standing(1);
+    sample.values.clear();
+    for (std::uint8_t name = 0; name < 16; ++name)
+      sample.values.push_back({name, name == 3 && i == 777 ? 123456 : i % 50 * 1000, 0});
+    told.tell(sample, i * 10 * kMillisecond);
+  }
+  EXPECT_LE(drawn.read(10 * kSecond), static_cast<int>(Scope::kMostPoints));
+  EXPECT_LT(drawn.longest, kFrame);
+  EXPECT_EQ(std::ranges::count(drawn.all, 123.456), 1);
+  EXPECT_GT(drawn.all.size(), 40U);
+}
+
+TEST(Scope, KeepsGapsOfWhatIsThinnedOut) {
+  std::vector<Point> points;
+  for (SteadyNs at = 0; at < 1000; ++at) points.push_back({at, at % 7, at % 100 != 50});
+  const auto left = thinned(points, 100);
+  EXPECT_LE(left.size(), 100U);
+  for (SteadyNs gap = 50; gap < 1000; gap += 100) {
+    const auto behind = std::ranges::upper_bound(left, gap, {}, &Point::at);
+    ASSERT_NE(behind, left.begin());
+    EXPECT_FALSE(std::prev(behind)->known) << "between what was before " << gap << " and what is behind it";
+  }
+  EXPECT_EQ(thinned(points, 1000), points);
+}
+
+TEST(Stream, BringsLinesAtItsPeriodFromOnePeriodAgo) {
+  Told told;
+  for (int i = 0; i < 50; ++i) tell_velocity(told, i * 1000, (i - 49) * 10 * kMillisecond);
+  StreamRequest request;
+  request.period_ms = 200;
+  request.series = {{1, static_cast<std::uint8_t>(Quantity::velocity_actual)}};
+  Page page(told, request);
+  EXPECT_THAT(page.read(0), ElementsAre("hello", "axes", "scope", "buses", "gateway"));
+  tell_velocity(told, 60000, 100 * kMillisecond);
+  EXPECT_THAT(page.read(150 * kMillisecond), IsEmpty());
+  EXPECT_THAT(page.read(200 * kMillisecond), ElementsAre("axes", "scope"));
+  EXPECT_EQ(page.last().data["series"]["1.velocity_rpm"].dump(), "[[0,60.0]]");
 }
 
 TEST(Stream, SaysWhyItEnds) {

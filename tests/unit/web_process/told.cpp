@@ -87,9 +87,7 @@ Told::Told() {
   tell(FaultWordRecord{"kinco-jd", 0, 4, false, 0, 0x3210, "the DC bus is too high", "a braking resistor"});
 }
 
-void Told::tell(const Record& record, SteadyNs after_start) {
-  ASSERT_TRUE(picture_.take(record, kStarted + after_start));
-}
+void Told::tell(const Record& record, SteadyNs after_start) { ASSERT_TRUE(stores_.take(record, at(after_start))); }
 
 void Told::tell(const AxisSample& sample, SteadyNs after_start) {
   SamplesRecord record;
@@ -99,12 +97,12 @@ void Told::tell(const AxisSample& sample, SteadyNs after_start) {
 }
 
 Json Told::axis(std::uint16_t number, SteadyNs after_start) const {
-  return axis_json(picture_, *picture_.find(number), at(after_start));
+  return axis_json(stores_.picture, *stores_.picture.find(number), at(after_start));
 }
 
 std::vector<std::string> Told::blocks(std::uint16_t number, SteadyNs after_start) const {
   std::vector<std::string> out;
-  for (const Block& block : blocked_by(picture_, *picture_.find(number), kStarted + after_start))
+  for (const Block& block : blocked_by(stores_.picture, *stores_.picture.find(number), kStarted + after_start))
     out.push_back(block.word);
   return out;
 }
@@ -118,13 +116,14 @@ Request get(const std::string& target) {
 }
 
 Answer answer_to(const Request& request, Told& told, SteadyNs after_start) {
-  return answer(request, told.picture(), Served{}, at(after_start));
+  return answer(request, told.stores(), Served{}, at(after_start));
 }
 Answer asked(Told& told, const std::string& target, SteadyNs after_start) {
   return answer_to(get(target), told, after_start);
 }
 
 Json body_of(const Answer& answer) { return Json::parse(std::get<Response>(answer.what).body()); }
+std::string detail_of(const Answer& answer) { return body_of(answer)["detail"].get<std::string>(); }
 unsigned status_of(const Answer& answer) { return std::get<Response>(answer.what).status; }
 
 }  // namespace axisgate::web

@@ -34,14 +34,15 @@ class Told {
   Told();
   void tell(const Record& record, SteadyNs after_start = 0);
   void tell(const AxisSample& sample, SteadyNs after_start = 0);
-  [[nodiscard]] Picture& picture() { return picture_; }
+  [[nodiscard]] Picture& picture() { return stores_.picture; }
+  [[nodiscard]] Stores& stores() { return stores_; }
   /// The axis as the API answers it.
   [[nodiscard]] Json axis(std::uint16_t number, SteadyNs after_start = 0) const;
   /// Words of what blocks it.
   [[nodiscard]] std::vector<std::string> blocks(std::uint16_t number, SteadyNs after_start = 0) const;
 
  private:
-  Picture picture_;
+  Stores stores_{std::size_t{4} << 20};
 };
 
 [[nodiscard]] Request get(const std::string& target);
@@ -50,5 +51,7 @@ class Told {
 [[nodiscard]] Answer answer_to(const Request& request, Told& told, SteadyNs after_start = 0);
 [[nodiscard]] Json body_of(const Answer& answer);
 [[nodiscard]] unsigned status_of(const Answer& answer);
+/// Of a refusal.
+[[nodiscard]] std::string detail_of(const Answer& answer);
 
 }  // namespace axisgate::web

@@ -11,8 +11,8 @@
 #include "gateway/image/register_map.hpp"
 #include "gateway/upstream/web_process/api/blocked_by.hpp"
 #include "gateway/upstream/web_process/api/fault_json.hpp"
-#include "gateway/upstream/web_process/api/value_names.hpp"
 #include "gateway/upstream/web_process/api/words_json.hpp"
+#include "gateway/upstream/web_process/values/value_names.hpp"
 
 namespace axisgate::web {
 namespace {
@@ -31,13 +31,6 @@ struct View {
   [[nodiscard]] bool valid(Quantity quantity) const {
     return joined && (axis.sample.valid & axis.sample.supported & bit(quantity)) != 0 && axis.of(quantity).known;
   }
-  /// Nothing shows that it turns.
-  [[nodiscard]] bool stands() const {
-    constexpr std::int64_t kTremble = 1000;  // 0.001 rpm
-    if ((axis.sample.supported & bit(Quantity::velocity_actual)) == 0) return true;
-    const std::int64_t velocity = axis.of(Quantity::velocity_actual).value;
-    return valid(Quantity::velocity_actual) && velocity > -kTremble && velocity < kTremble;
-  }
 };
 
 Json name_json(const View& of, WordKind kind, std::uint32_t number, std::uint32_t unknown) {
@@ -46,8 +39,7 @@ Json name_json(const View& of, WordKind kind, std::uint32_t number, std::uint32_
 
 std::string_view state_text(const View& of) {
   const auto unknown = static_cast<std::uint32_t>(AxisState::unknown);
-  return axis_state_text(of.joined ? of.axis.sample.axis_state : unknown,
-                         of.axis.has(AxisAlarm::stop_latched) && of.stands());
+  return axis_state_text(of.joined ? of.axis.sample.axis_state : unknown, of.axis.latched_and_stands());
 }
 
 /// Since the sample it has become older.
@@ -166,6 +158,7 @@ Json axis_now_json(const Picture& picture, const AxisPicture& axis, const Now& n
   out["mode_text"] = mode_json(of);
   out["alarms"] = alarms_json(WordKind::axis_alarm, sample.alarms, info.axis);
   out["fault"] = fault_json(picture, axis, now);
+  out["capture"] = axis.capture.empty() ? Json() : Json(axis.capture);
   out["blocked_by"] = blocks_json(of);
   out["owner"] = sample.owner.empty() ? Json() : Json(sample.owner);
   out["lease_ms"] = sample.owner.empty() || sample.lease_ms == kNone ? Json() : Json(sample.lease_ms);

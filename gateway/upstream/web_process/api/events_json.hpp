@@ -13,7 +13,6 @@
 
 namespace axisgate::web {
 
-inline constexpr std::size_t kEventKinds = static_cast<std::size_t>(EventKind::position_wrapped) + 1;
 [[nodiscard]] std::optional<EventKind> event_kind_named(std::string_view name);
 
 struct EventFilter {

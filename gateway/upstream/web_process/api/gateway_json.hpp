@@ -8,20 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "gateway/upstream/web_process/http/refusals.hpp"
+#include "gateway/upstream/web_process/http/served.hpp"
 #include "gateway/upstream/web_process/picture/picture.hpp"
 
 namespace axisgate::web {
-
-/// What this program counts itself, and how it runs.
-struct Served {
-  bool insecure = false;
-  bool confined = false;
-  std::size_t connections = 0;
-  std::size_t streams = 0;
-  std::uint64_t requests = 0;
-  RefusalCounts refused{};
-};
 
 [[nodiscard]] nlohmann::ordered_json gateway_json(const Picture& picture, const Served& served, const Now& now);
 [[nodiscard]] nlohmann::ordered_json bus_json(const Picture& picture, const BusPicture& bus, SteadyNs now);

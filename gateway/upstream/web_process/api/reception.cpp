@@ -25,7 +25,7 @@ std::optional<Refusal> Reception::enter(const Address& address) {
   return refusal;
 }
 
-Answer Reception::answer(const Request& request, const Peer& peer, const Picture& picture, const Now& now) {
+Answer Reception::answer(const Request& request, const Peer& peer, const Stores& stores, const Now& now) {
   ++served_.requests;
   const auto refused = [this](Refusal refusal) {
     count(refusal);
@@ -33,7 +33,7 @@ Answer Reception::answer(const Request& request, const Peer& peer, const Picture
   };
   if (!buckets_.takes(peer.address, now.at)) return refused(Refusal::rate);
   if (!names_us(request.host, peer.reached, settings_.hosts)) return refused(Refusal::host);
-  Answer out = web::answer(request, picture, served_, now);
+  Answer out = web::answer(request, stores, served_, now);
   if (out.refused) count(*out.refused);
   if (!std::holds_alternative<StreamRequest>(out.what)) return out;
   if (request.method == Request::Method::head) return {Response{.type = "text/event-stream", .close = true}};

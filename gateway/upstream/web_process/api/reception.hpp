@@ -29,7 +29,7 @@ class Reception {
   void end_stream() { --served_.streams; }
 
   /// A stream that is answered counts until end_stream().
-  [[nodiscard]] Answer answer(const Request& request, const Peer& peer, const Picture& picture, const Now& now);
+  [[nodiscard]] Answer answer(const Request& request, const Peer& peer, const Stores& stores, const Now& now);
   /// A refusal that something else has met.
   void count(Refusal refusal) { served_.refused.count(refusal); }
   void confined(bool confined) { served_.confined = confined; }

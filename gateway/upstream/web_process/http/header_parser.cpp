@@ -41,7 +41,8 @@ std::optional<Request> parse_header(std::string_view header) {
   out.method = method_of(read.method());
   out.target = read.target();
   if (!out.target.starts_with('/')) return std::nullopt;
-  out.keep_alive = read.version() == 11 && read.keep_alive();
+  out.takes_chunks = read.version() == 11;
+  out.keep_alive = out.takes_chunks && read.keep_alive();
   out.body = parser.chunked() || read.count(http::field::transfer_encoding) != 0 ||
              (parser.content_length() && *parser.content_length() != 0);
   out.hosts = static_cast<int>(read.count(http::field::host));

@@ -19,6 +19,7 @@ struct Request {
   std::string if_none_match;
   std::string last_event_id;
   bool takes_gzip = false;
+  bool takes_chunks = true;  ///< of HTTP/1.1
 };
 
 }  // namespace axisgate::web

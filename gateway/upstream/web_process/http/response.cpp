@@ -124,11 +124,18 @@ Response problem(Refusal refusal) { return problem(refusal, detail_of(refusal));
 
 std::string header_of(const Response& response, bool keep_alive, const Now& now) {
   std::string out = status_line(response.status, now);
-  if (!response.type.empty())
+  if (response.pieces)
+    out +=
+        fmt::format("Content-Type: {}\r\n{}", response.type, response.chunked ? "Transfer-Encoding: chunked\r\n" : "");
+  else if (!response.type.empty())
     out += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n", response.type, response.body().size());
   out += fmt::format("Cache-Control: {}\r\n{}", response.cache, response.fields);
   if (response.close || !keep_alive) out += "Connection: close\r\n";
   return out + "\r\n";
+}
+
+std::string piece_of(const Response& response, std::string piece) {
+  return response.chunked ? fmt::format("{:x}\r\n{}\r\n", piece.size(), piece) : piece;
 }
 
 std::string stream_header(const Now& now) {

@@ -19,6 +19,7 @@ struct Settings {
   std::vector<Network> allow{};      ///< who may look; empty: this computer
   std::size_t max_connections = 100;
   std::size_t max_streams = 50;
+  std::uint32_t history_mb = 48;
   std::uint32_t memory_limit_mb = 128;
 };
 

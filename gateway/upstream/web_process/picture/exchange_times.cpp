@@ -6,7 +6,7 @@
 namespace axisgate::web {
 namespace {
 
-using Buckets = std::array<std::uint32_t, kTimeBuckets>;
+using Buckets = std::array<std::uint64_t, TimeCounts::kBuckets>;
 
 /// Below it all of bucket i are; the last one has no end, and is taken to be as wide as those before together.
 double end_of(std::size_t bucket) {
@@ -18,7 +18,7 @@ double percentile(const Buckets& buckets, std::uint64_t count, double share) {
   const double wanted = share * static_cast<double>(count);
   double below = 0;
   for (std::size_t i = 0; i < buckets.size(); ++i) {
-    const double here = buckets[i];
+    const auto here = static_cast<double>(buckets[i]);
     if (here > 0 && below + here >= wanted) {
       const double begin = i == 0 ? 0 : end_of(i - 1);
       return begin + (end_of(i) - begin) * (wanted - below) / here;
@@ -37,8 +37,8 @@ void ExchangeTimes::add(const Counts& counts, SteadyNs at) {
 
 std::optional<ExchangeTimes::Percentiles> ExchangeTimes::of(std::size_t exchange_class) const {
   if (looks_.size() < 2) return std::nullopt;
-  const Buckets& first = looks_.front().counts[exchange_class];
-  Buckets since = looks_.back().counts[exchange_class];
+  const Buckets& first = looks_.front().counts[exchange_class].counts;
+  Buckets since = looks_.back().counts[exchange_class].counts;
   for (std::size_t i = 0; i < since.size(); ++i) since[i] -= first[i];
   const std::uint64_t count = std::accumulate(since.begin(), since.end(), std::uint64_t{0});
   if (count == 0) return std::nullopt;

@@ -19,7 +19,7 @@ inline constexpr std::array<std::string_view, kExchangeClasses> kExchangeClassNa
 
 class ExchangeTimes {
  public:
-  using Counts = std::array<std::array<std::uint32_t, kTimeBuckets>, kExchangeClasses>;
+  using Counts = BusCounts::ByClass;
   static constexpr SteadyNs kSpan = 60'000'000'000;
 
   void add(const Counts& counts, SteadyNs at);

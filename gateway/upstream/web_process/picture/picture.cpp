@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/web_process/picture/picture.hpp"
 
+#include <bit>
 #include <cstdlib>
 #include <type_traits>
+
+#include "gateway/upstream/web_process/values/series.hpp"
 
 namespace axisgate::web {
 namespace {
 
-constexpr SteadyNs kMicrosecond = 1000;
 constexpr SteadyNs kResultTremble = 5 * kMillisecond;
 /// A profile's table has some hundred rows, and there are some dozen profiles: a bound beyond all of them.
 constexpr std::size_t kMostFaultWords = 16384;
 
-/// The register's number: of an u32 the record has its bits.
-std::int64_t number_of(const Value& value) {
-  const RegisterType type = row(static_cast<Quantity>(value.quantity)).type;
-  return type == RegisterType::u32 ? std::int64_t{static_cast<std::uint32_t>(value.value)} : value.value;
-}
-
 }  // namespace
+
+bool AxisPicture::latched_and_stands() const {
+  constexpr std::int64_t kTremble = 1000;  // 0.001 rpm
+  if (!has(AxisAlarm::stop_latched)) return false;
+  const std::uint32_t velocity = bit(Quantity::velocity_actual);
+  if ((sample.supported & velocity) == 0) return true;
+  const HeldValue& held = of(Quantity::velocity_actual);
+  return (sample.valid & velocity) != 0 && held.known && held.value > -kTremble && held.value < kTremble;
+}
 
 bool Picture::take(const Record& record, SteadyNs now) {
   heard_ = now;
@@ -71,7 +76,8 @@ void Picture::on(const SamplesRecord& record) {
 void Picture::take_sample(AxisPicture& axis, const AxisSample& sample, SteadyNs at) {
   for (const Value& value : sample.values)
     if (value.quantity < kQuantityCount)
-      axis.values[value.quantity] = {true, number_of(value), at - value.age_us * kMicrosecond};
+      axis.values[value.quantity] = {true, series_number(value.quantity, std::bit_cast<std::uint32_t>(value.value)),
+                                     at - value.age_us * kMicrosecond};
   // Its age comes in whole milliseconds: of one and the same result it must not go to and fro.
   const SteadyNs result = at - sample.result_age_ms * SteadyNs{kMillisecond};
   if (std::abs(result - axis.result) > kResultTremble) axis.result = result;
@@ -81,8 +87,23 @@ void Picture::take_sample(AxisPicture& axis, const AxisSample& sample, SteadyNs 
   ++axis.revision;
   const bool fault =
       axis.has(AxisInput::fault) || sample.axis_state == static_cast<std::uint8_t>(AxisState::error_stop);
-  if (!fault) axis.fault = 0;
+  if (!fault) {
+    axis.fault = 0;
+    axis.capture.clear();
+  }
   if (fault && axis.fault == 0) axis.fault = at;
+}
+
+void Picture::captured(std::uint16_t axis, std::string id) {
+  const auto found = axes_.find(axis);
+  if (found == axes_.end()) return;
+  found->second.capture = std::move(id);
+  ++found->second.revision;
+}
+
+void Picture::forget_capture(const std::string& id) {
+  for (auto& [number, axis] : axes_)
+    if (axis.capture == id) captured(number, {});
 }
 
 void Picture::on(const EventRecord& record) {
@@ -96,8 +117,18 @@ void Picture::on(const StatisticsRecord& record) {
   for (auto& [place, bus] : buses_) {
     if (place >= record.buses.size()) continue;
     bus.newest = record.buses[place];
-    bus.times.add(bus.newest->times, record.at);
   }
+}
+
+void Picture::on(const CountsRecord& record) {
+  for (const BusCounts& counts : record.buses) {
+    const auto found = buses_.find(counts.bus);
+    if (found == buses_.end()) continue;
+    found->second.counts = counts;
+    found->second.times.add(counts.times, record.at);
+  }
+  for (const AxisCountsRow& counts : record.axes)
+    if (const auto found = axes_.find(counts.axis); found != axes_.end()) found->second.counts = counts;
 }
 
 }  // namespace axisgate::web

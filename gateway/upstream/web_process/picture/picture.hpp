@@ -38,18 +38,23 @@ struct AxisPicture {
   AxisSample sample{};         ///< the newest; its values are in `values`
   SteadyNs sampled = 0;        ///< when the sample was made; 0: none came yet
   SteadyNs fault = 0;          ///< since when there is a fault; 0: there is none
+  std::string capture{};       ///< of the fault there is; empty: none
   SteadyNs result = 0;         ///< when the newest result came
   std::uint64_t revision = 0;  ///< another one after each sample
   std::array<HeldValue, kQuantityCount> values{};
+  std::optional<AxisCountsRow> counts{};
 
   [[nodiscard]] const HeldValue& of(Quantity quantity) const { return values[static_cast<std::size_t>(quantity)]; }
   [[nodiscard]] bool has(AxisInput input) const { return (sample.inputs & bit(input)) != 0; }
   [[nodiscard]] bool has(AxisAlarm alarm) const { return (sample.alarms & bit(alarm)) != 0; }
+  /// A stop is latched, and nothing shows that it turns.
+  [[nodiscard]] bool latched_and_stands() const;
 };
 
 struct BusPicture {
   BusInfoRecord info{};
   std::optional<BusStatistics> newest{};
+  std::optional<BusCounts> counts{};
   ExchangeTimes times{};
 };
 
@@ -57,6 +62,10 @@ class Picture {
  public:
   /// False: the gateway never sends such a record.
   [[nodiscard]] bool take(const Record& record, SteadyNs now);
+  /// In which capture the fault of this axis is; empty: in none.
+  void captured(std::uint16_t axis, std::string id);
+  /// It is there no more.
+  void forget_capture(const std::string& id);
   /// The gateway's socket is closed.
   void close() { open_ = false; }
 
@@ -94,6 +103,7 @@ class Picture {
   void on(const SamplesRecord& record);
   void on(const EventRecord& record);
   void on(const StatisticsRecord& record);
+  void on(const CountsRecord& record);
   static void take_sample(AxisPicture& axis, const AxisSample& sample, SteadyNs at);
 
   bool open_ = true;

@@ -11,6 +11,7 @@
 #include "gateway/upstream/link/exit_codes.hpp"
 #include "gateway/upstream/program/steady.hpp"
 #include "gateway/upstream/web_process/api/refusal_lines.hpp"
+#include "gateway/upstream/web_process/serve/capture_folder.hpp"
 #include "gateway/upstream/web_process/serve/listening.hpp"
 #include "gateway/upstream/web_process/serve/session.hpp"
 #include "gateway/upstream/web_process/system/confinement.hpp"
@@ -28,6 +29,8 @@ constexpr auto kTurnEach = std::chrono::nanoseconds(kGrid);
 constexpr auto kAcceptAgain = std::chrono::milliseconds(100);
 /// Of the memory's limit, for answers that are not taken yet.
 constexpr std::size_t kShareOfAnswers = 4;
+/// And for captures.
+constexpr std::size_t kShareOfCaptures = 8;
 /// In one turn of the loop, so that pages have theirs.
 constexpr int kRecordsAtOnce = 256;
 
@@ -35,14 +38,17 @@ Now clocks() { return {program::steady_now(), program::time_of_day_difference()}
 
 class Server {
  public:
-  Server(const Settings& settings, Link& link)
+  Server(const Settings& settings, const CaptureSettings& captures, Link& link)
       : link_(link),
+        capture_bytes_((std::size_t{settings.memory_limit_mb} << 20) / kShareOfCaptures),
+        folder_(captures.folder, [this](LogLevel level, const std::string& text) { tell(level, text); }),
         listening_(open_listening(io_, settings.listen)),
         from_gateway_(io_),
         end_signal_(io_, SIGTERM),
         look_(io_),
         turn_(io_),
         desk_{.reception = Reception(settings),
+              .stores = Stores(std::size_t{settings.history_mb} << 20, captures, capture_bytes_),
               .now = [this] { return now(); },
               .on_refusal = [this](Refusal refusal, const Address& who) { tell_refusal(refusal, who); },
               .most_held = (std::size_t{settings.memory_limit_mb} << 20) / kShareOfAnswers,
@@ -66,12 +72,18 @@ class Server {
     end_signal_.async_wait([this](error_code error, int) {
       if (!error) end(link::kExitGatewayGone, "axisgate-web was asked to end");
     });
+    folder_.restore(desk_.stores.recorder, capture_bytes_);
     wait_records();
     look_again();
-    const bool confined = confine();
-    desk_.reception.confined(confined);
-    link_.send(ReadyRecord{AXISGATE_VERSION, confined});
-    if (!confined)
+    const Confinement done = confine(folder_.descriptor());
+    desk_.reception.confined(done.confined);
+    link_.send(ReadyRecord{AXISGATE_VERSION, done.confined});
+    if (done.confined && !done.writes && folder_.descriptor() >= 0) {
+      folder_.close();
+      tell(LogLevel::warning,
+           "new captures are in memory alone: the kernel cannot keep a program in one folder (Landlock)");
+    }
+    if (!done.confined)
       tell(LogLevel::warning, "the kernel has no filter of system calls (seccomp): this process is not confined");
     for (Listening& each : listening_) {
       tell(each.is_there ? LogLevel::info : LogLevel::warning,
@@ -108,7 +120,7 @@ class Server {
       if (got.what == program::Received::nothing) break;
       if (got.what == program::Received::closed) return end(link::kExitGatewayGone, "the gateway has ended");
       if (got.what == program::Received::garbage) return end_for(got.problem);
-      if (!desk_.picture.take(got.record, now().at)) return end_for("a record that the gateway never sends");
+      if (!desk_.stores.take(got.record, now())) return end_for("a record that the gateway never sends");
     }
     wait_records();
   }
@@ -172,6 +184,7 @@ class Server {
       if (error) return;
       for (const auto& session : sessions_) session->look();
       std::erase_if(sessions_, [](const auto& session) { return session->ended(); });
+      folder_.take(desk_.stores.turn(now()));
       link_.flush();
       look_again();
     });
@@ -192,7 +205,7 @@ class Server {
       if (error) return;
       turning_ = desk_.reception.served().streams != 0;
       if (!turning_) return;
-      desk_.feed.update(desk_.picture, desk_.reception.served(), now());
+      desk_.feed.update(desk_.stores.picture, desk_.reception.served(), now());
       for (const auto& session : sessions_)
         if (session->streams()) session->turn();
       next_turn();
@@ -200,6 +213,8 @@ class Server {
   }
 
   Link& link_;
+  const std::size_t capture_bytes_;
+  CaptureFolder folder_;
   asio::io_context io_{1};
   std::vector<Listening> listening_;
   asio::posix::stream_descriptor from_gateway_;
@@ -217,8 +232,8 @@ class Server {
 
 }  // namespace
 
-int serve(const Settings& settings, Link& link) {
-  Server server(settings, link);
+int serve(const Settings& settings, const CaptureSettings& captures, Link& link) {
+  Server server(settings, captures, link);
   return server.run();
 }
 

@@ -6,6 +6,7 @@
 
 #include "gateway/upstream/program/record_link.hpp"
 #include "gateway/upstream/web_link/records.hpp"
+#include "gateway/upstream/web_process/capture/capture_settings.hpp"
 #include "gateway/upstream/web_process/http/settings.hpp"
 
 namespace axisgate::web {
@@ -13,6 +14,6 @@ namespace axisgate::web {
 using Link = program::RecordLink<Record, decode>;
 
 /// The exit code. Throws program::StartError where it cannot begin.
-[[nodiscard]] int serve(const Settings& settings, Link& link);
+[[nodiscard]] int serve(const Settings& settings, const CaptureSettings& captures, Link& link);
 
 }  // namespace axisgate::web

@@ -14,6 +14,8 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
+/// What is read ahead of sixteen series, and a piece.
+constexpr std::size_t kHeldForPieces = 160 * 1024;
 constexpr SteadyNs kLeavesWithin = 2 * kSecond;
 /// In one turn of the loop, so that others have theirs.
 constexpr std::size_t kReadAtOnce = 16 * 1024;
@@ -86,7 +88,7 @@ void Session::serve(const Request& request) {
     return respond(problem(Refusal::memory), request.method != Request::Method::head, request.keep_alive);
   }
   const Now now = desk_.now();
-  const Answer answer = desk_.reception.answer(request, peer_, desk_.picture, now);
+  const Answer answer = desk_.reception.answer(request, peer_, desk_.stores, now);
   if (answer.refused) desk_.on_refusal(*answer.refused, peer_.address);
   if (const auto* stream = std::get_if<StreamRequest>(&answer.what)) return begin_stream(*stream, now);
   respond(std::get<Response>(answer.what), request.method != Request::Method::head, request.keep_alive);
@@ -101,9 +103,10 @@ void Session::respond(const Response& response, bool with_body, bool keep_alive)
   out_ = header_of(response, keep_alive, now);
   close_ = response.close || !keep_alive;
   if (with_body) body_ = response;
+  pieces_ = 0;
   if (write_out()) return answered();
-  if (state_ != State::answering || !response.owned) return;
-  held_ = response.owned->size();
+  if (state_ != State::answering) return;
+  held_ = response.pieces ? kHeldForPieces : response.owned ? response.owned->size() : 0;
   desk_.held += held_;
 }
 
@@ -130,9 +133,27 @@ bool Session::write_out() {
     if (taken_) taken_->sent(size);
   }
   out_.clear();
-  body_.reset();
   written_ = 0;
+  if (body_ && body_->pieces) {
+    next_piece();
+    return false;
+  }
+  body_.reset();
   return true;
+}
+
+/// It goes out in a turn of the loop of its own, so that others have theirs.
+void Session::next_piece() {
+  const std::string piece = body_->pieces();
+  pieces_ += piece.size();
+  if (pieces_ > kMaxPieces) {
+    desk_.reception.count(Refusal::large_answer);
+    return end();
+  }
+  out_ = piece_of(*body_, piece);
+  if (piece.empty()) body_.reset();
+  deadline_ = desk_.now().at + kAnswerTakenIn;
+  wait_writable();
 }
 
 void Session::wait_writable() {
@@ -171,17 +192,17 @@ void Session::leave() {
 
 void Session::begin_stream(const StreamRequest& request, const Now& now) {
   state_ = State::streaming;
-  stream_.emplace(request, desk_.picture, now.at);
+  stream_.emplace(request, desk_.stores.picture, now.at);
   taken_.emplace(now.at);
   out_ = stream_header(now);
-  desk_.feed.update(desk_.picture, desk_.reception.served(), now);
+  desk_.feed.update(desk_.stores.picture, desk_.reception.served(), now);
   if (write_out()) turn();
   desk_.on_stream();
 }
 
 void Session::turn() {
   while (state_ == State::streaming && out_.empty()) {
-    out_ = stream_->next(desk_.picture, desk_.feed, desk_.now());
+    out_ = stream_->next(desk_.stores, desk_.feed, desk_.now());
     if (out_.empty() || !write_out()) return;
   }
 }

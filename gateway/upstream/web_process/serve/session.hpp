@@ -21,7 +21,7 @@ namespace axisgate::web {
 /// What all connections share; it outlives them.
 struct Desk {
   Reception reception;
-  Picture picture{};
+  Stores stores;
   Feed feed{};
   std::function<Now()> now;
   std::function<void(Refusal, const Address&)> on_refusal;
@@ -64,6 +64,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void begin_stream(const StreamRequest& request, const Now& now);
   /// False: the other side does not take all of it now, or is gone.
   bool write_out();
+  void next_piece();
   void answered();
   void release();
   void leave();
@@ -79,6 +80,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::optional<Response> body_;  ///< behind the header
   std::size_t held_ = 0;          ///< of Desk::held what is this answer's
   std::size_t written_ = 0;       ///< of both together
+  std::uint64_t pieces_ = 0;      ///< bytes of the body that is made while it is taken
   bool close_ = false;            ///< behind this answer
   bool waits_writable_ = false;
   SteadyNs deadline_ = 0;  ///< of answering and leaving

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gateway/upstream/web_process/api/captures_json.hpp"
 #include "gateway/upstream/web_process/api/events_json.hpp"
 
 namespace axisgate::web {
@@ -21,21 +22,21 @@ std::string dumped_frame(std::string_view event, const nlohmann::ordered_json& d
 }  // namespace
 
 Stream::Stream(StreamRequest request, const Picture& picture, SteadyNs now)
-    : request_(std::move(request)), event_(request_.after.value_or(picture.newest_event())), said_(now) {}
+    : request_(std::move(request)),
+      event_(request_.after.value_or(picture.newest_event())),
+      scope_(request_.series, now - period()),
+      said_(now) {}
 
 std::string Stream::bye(std::string_view why) { return dumped_frame("bye", {{"why", why}}); }
 
-SteadyNs Stream::turn_after(SteadyNs now) const {
-  const SteadyNs period = static_cast<SteadyNs>(request_.period_ms) * kMillisecond;
-  return (now / kGrid + (period + kGrid - 1) / kGrid) * kGrid;
-}
+SteadyNs Stream::turn_after(SteadyNs now) const { return (now / kGrid + (period() + kGrid - 1) / kGrid) * kGrid; }
 
 void Stream::begin(const Feed& feed, SteadyNs now) {
   generation_ = feed.generation();
   sent_.clear();
   reached_ = 0;
   first_ = true;
-  axes_due_ = whole_due_ = now;
+  axes_due_ = scope_due_ = whole_due_ = now;
   buses_ = gateway_ = 0;
 }
 
@@ -55,6 +56,20 @@ std::string Stream::events(const Picture& picture, const Now& now) {
     out += fmt::format("id: {}\n", event_id(picture, event.number)) +
            dumped_frame("event", event_json(picture, event, now));
     event_ = event.number;
+  }
+  return out;
+}
+
+/// Those that begin and that are complete from now on.
+std::string Stream::captures(const Recorder& recorder) {
+  const std::uint64_t sent = capture_.value_or(recorder.newest_change());
+  capture_ = recorder.newest_change();
+  std::string out;
+  for (const Recorder::Change& change : recorder.changes()) {
+    if (change.number <= sent) continue;
+    nlohmann::ordered_json capture = capture_json(*change.capture);
+    capture["complete"] = change.complete;
+    out += dumped_frame("capture", capture);
   }
   return out;
 }
@@ -91,15 +106,23 @@ std::string Stream::whole(std::string_view event, const WholeObject& object, Ver
   return frame(event, fmt::format(R"({{"at":"{}",{}}})", utc_text(now.at, now), object.text));
 }
 
-std::string Stream::next(const Picture& picture, const Feed& feed, const Now& now) {
+std::string Stream::scope(const Stores& stores, const Now& now) {
+  scope_due_ = turn_after(now.at);
+  const std::string data = scope_.next(stores, now);
+  return data.empty() ? data : frame("scope", data);
+}
+
+std::string Stream::next(const Stores& stores, const Feed& feed, const Now& now) {
+  const Picture& picture = stores.picture;
   std::string out;
   if (picture.complete() && feed.generation() == picture.generation()) {
     if (generation_ != feed.generation()) {
       begin(feed, now.at);
       out = hello(picture);
     }
-    out += events(picture, now);
+    out += events(picture, now) + captures(stores.recorder);
     if (now.at >= axes_due_) out += axes(feed, now);
+    if (now.at >= scope_due_) out += scope(stores, now);
     if (now.at >= whole_due_) {
       whole_due_ = now.at + kSecond;
       out += whole("buses", feed.buses(), buses_, now) + whole("gateway", feed.gateway(), gateway_, now);

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/upstream/web_process/system/confinement.hpp"
 
+#include <fcntl.h>
+#include <linux/landlock.h>
 #include <seccomp.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
 
 namespace axisgate::web {
 namespace {
@@ -88,31 +94,69 @@ constexpr std::array<unsigned long, 3> kAsked{FIONBIO, FIONREAD, TIOCOUTQ};
 /// One that this kind of processor does not have needs no rule.
 bool is_added(int result) { return result == 0 || result == -EDOM; }
 
-bool allow_with(scmp_filter_ctx filter, int call, unsigned argument, std::uint64_t value) {
-  const scmp_arg_cmp only{argument, SCMP_CMP_EQ, value, 0};
-  return is_added(seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, 1, &only));
+struct Only {
+  unsigned argument;
+  std::uint64_t value;
+};
+
+/// The call with these arguments alone.
+bool allow_with(scmp_filter_ctx filter, int call, std::initializer_list<Only> arguments) {
+  std::vector<scmp_arg_cmp> only;
+  for (const Only& each : arguments) only.push_back({each.argument, SCMP_CMP_EQ, each.value, 0});
+  return is_added(
+      seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, static_cast<unsigned>(only.size()), only.data()));
 }
 
-bool add_rules(scmp_filter_ctx filter) {
+/// A filter sees no names: which ones the calls may have, Landlock says.
+bool add_files(scmp_filter_ctx filter, int folder) {
+  const auto in = static_cast<std::uint64_t>(folder);
+  return allow_with(filter, SCMP_SYS(openat),
+                    {{0, in}, {2, static_cast<std::uint64_t>(new_file_flags())}, {3, kNewFileMode}}) &&
+         allow_with(filter, SCMP_SYS(renameat2), {{0, in}, {2, in}, {4, 0}}) &&
+         allow_with(filter, SCMP_SYS(unlinkat), {{0, in}, {2, 0}});
+}
+
+bool add_rules(scmp_filter_ctx filter, int folder) {
   for (const int call : kAllowed)
     if (!is_added(seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0))) return false;
   for (const int call : kEndsIt)
     if (!is_added(seccomp_rule_add(filter, SCMP_ACT_KILL_PROCESS, call, 0))) return false;
   for (const unsigned long request : kAsked)
-    if (!allow_with(filter, SCMP_SYS(ioctl), 1, request)) return false;
+    if (!allow_with(filter, SCMP_SYS(ioctl), {{1, request}})) return false;
+  if (folder >= 0 && !add_files(filter, folder)) return false;
   // An abort is a signal to itself.
-  return allow_with(filter, SCMP_SYS(tgkill), 0, static_cast<std::uint64_t>(getpid()));
+  return allow_with(filter, SCMP_SYS(tgkill), {{0, static_cast<std::uint64_t>(getpid())}});
+}
+
+/// From here on files can be made, written, renamed and removed in this folder alone. False: the kernel cannot do that.
+bool keep_names_in(int folder) {
+  constexpr std::uint64_t kNewFiles = LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_WRITE_FILE;
+  landlock_ruleset_attr all{};
+  all.handled_access_fs = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all that the first version knows
+  const auto rules = static_cast<int>(syscall(SYS_landlock_create_ruleset, &all, sizeof(all.handled_access_fs), 0));
+  if (rules < 0) return false;
+  landlock_path_beneath_attr here{};
+  here.allowed_access = kNewFiles | LANDLOCK_ACCESS_FS_REMOVE_FILE;
+  here.parent_fd = folder;
+  const bool kept = syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &here, 0) == 0 &&
+                    syscall(SYS_landlock_restrict_self, rules, 0) == 0;
+  close(rules);
+  return kept;
 }
 
 }  // namespace
 
-bool confine() {
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
+int new_file_flags() { return O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC; }
+
+Confinement confine(int folder) {
+  Confinement out;
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return out;
+  out.writes = folder >= 0 && keep_names_in(folder);
   const scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
-  if (filter == nullptr) return false;
-  const bool done = add_rules(filter) && seccomp_load(filter) == 0;
+  if (filter == nullptr) return out;
+  out.confined = add_rules(filter, out.writes ? folder : -1) && seccomp_load(filter) == 0;
   seccomp_release(filter);
-  return done;
+  return out;
 }
 
 }  // namespace axisgate::web

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "gateway/upstream/link/coder.hpp"
 
@@ -13,6 +15,7 @@ namespace axisgate::web {
 using link::kMillisecond;
 using link::kSecond;
 using link::SteadyNs;
+inline constexpr SteadyNs kMicrosecond = 1000;
 
 struct Now {
   SteadyNs at = 0;
@@ -22,6 +25,9 @@ struct Now {
 
 /// "2026-11-28T20:40:00.123456Z"
 [[nodiscard]] std::string utc_text(SteadyNs at, const Now& now);
+/// Back: with a 'Z' at its end, whole seconds or up to nine digits of a fraction; of the years 1971 to 2199. None: it
+/// is no such text.
+[[nodiscard]] std::optional<SteadyNs> parse_utc(std::string_view text, const Now& now);
 /// Of now, as the Date of an answer has it (RFC 9110, 5.6.7): "Sat, 28 Nov 2026 20:40:00 GMT".
 [[nodiscard]] std::string http_date(const Now& now);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/upstream/web_process/api/value_names.hpp"
+#include "gateway/upstream/web_process/values/value_names.hpp"
 
 #include <algorithm>
 #include <array>
