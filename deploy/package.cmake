@@ -82,6 +82,8 @@ if(TARGET axisgate-dds)
 endif()
 if(TARGET axisgate-web)
   axisgate_package(web axisgate-web)
+  install(FILES ${files}/monitoring/prometheus.yml ${files}/monitoring/rules.yml ${files}/monitoring/dashboard.json ${files}/monitoring/alertmanager.yml
+          DESTINATION share/axisgate/monitoring COMPONENT web EXCLUDE_FROM_ALL)
 endif()
 if(TARGET axisgate-sim)
   axisgate_package(simulator axisgate-sim)

@@ -181,6 +181,9 @@ std::string troubleshooting_page() {
 What axisgate shows, what it means, what usually causes it and what to do. `axisgate explain` prints the same for one word or
 number, and for the fault codes of the drives: `axisgate explain stop_latched`, `axisgate explain result 9`,
 `axisgate explain 0x3130`. This page is made from the table that the program itself uses.
+
+What happened just before a fault, a lost link or a stop that nobody asked for: the page has it as a capture, with nothing armed (docs/web.md,
+"Captures").
 )";
   const auto cell = [](std::string_view text) { return " " + std::string(text) + " |"; };
   for (int k = 0; k < kWordKinds; ++k) {

@@ -30,7 +30,7 @@ OF_ONE = {
               "/usr/share/doc/axisgate/deploy/examples/new_drive/acme-servo.eds"),
     DDS: ("/usr/share/axisgate/schemas/axisgate.idl", "/usr/share/doc/axisgate-dds/examples/axisgate-dds.nft",
           "/usr/share/doc/axisgate-dds/examples/README.md"),
-    WEB: (),
+    WEB: tuple(f"/usr/share/axisgate/monitoring/{name}" for name in ("prometheus.yml", "rules.yml", "dashboard.json", "alertmanager.yml")),
     SIMULATOR: (),
 }
 
@@ -113,10 +113,12 @@ class Debs(unittest.TestCase):
         self.assertIn(f"axisgate (= {version})", self.field(DDS, "Depends"))
         self.assertIn(f"axisgate (= {version})", self.field(WEB, "Depends"))
         self.assertIn("libseccomp2", self.field(WEB, "Depends"))
+        self.assertIn("libprometheus-cpp-core1.0", self.field(WEB, "Depends"))
+        self.assertNotRegex(self.field(WEB, "Depends"), "prometheus-cpp-pu")
         for name in (GATEWAY, WEB, SIMULATOR):
             needed = self.field(name, "Depends")
             self.assertRegex(needed, r"libc6 \(>= ")
-            self.assertNotRegex(needed, "fast|axisgate-dds" if name == WEB else "fast|axisgate-dds|axisgate-web|seccomp")
+            self.assertNotRegex(needed, "fast|axisgate-dds" if name == WEB else "fast|axisgate-dds|axisgate-web|seccomp|prometheus")
             self.assertNotRegex(self.field(name, "Recommends"), ".")
         self.assertIn("libmodbus5", self.field(GATEWAY, "Depends"))
         self.assertIn("adduser", self.field(GATEWAY, "Depends"))

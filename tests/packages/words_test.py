@@ -140,7 +140,7 @@ class Words(unittest.TestCase):
             Path(folder, "gateway.json").touch()
             for one in self.helps:
                 for front, _ in one.options + one.arguments:
-                    words = [NAMES.findall(front)[-1]] if front.startswith("-") else []
+                    words = [NAMES.findall(front.partition(" Excludes: ")[0])[-1]] if front.startswith("-") else []
                     if re.search(r"\b(FILE|CONFIG)\b", front) and front != "HOST:PORT":
                         with self.subTest(command=one.way, of=front):
                             self.assertIn("gateway.json", self.complete(*one.way, *words, "gate", folder=folder))

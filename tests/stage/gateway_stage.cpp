@@ -82,9 +82,9 @@ Configured configured(const std::vector<GatewayStage::Line>& lines) {
 }  // namespace
 
 GatewayStage::GatewayStage(std::vector<Line> lines, std::uint64_t seed)
-    : log_([this](LogLevel level, std::string_view source, std::string_view message) {
-        log_lines_.push_back(std::string(axisgate::text(level)) + " " + std::string(source) + ": " +
-                             std::string(message));
+    : log_([this](LogLevel level, const LogSource& source, std::string_view message) {
+        log_lines_.push_back(std::string(axisgate::text(level)) + " " + source.words + ": " + std::string(message));
+        log_sources_.push_back(source);
       }),
       lines_(std::move(lines)) {
   for (const Line& line : lines_) links_.push_back(link_of(line, seed++));

@@ -121,6 +121,8 @@ class GatewayStage {
   [[nodiscard]] simulated::CanopenNode& can_node(std::size_t line, std::size_t position = 0);
   [[nodiscard]] const AxisImage& axis(AxisNumber number) { return *gateway().image().find(number); }
   [[nodiscard]] std::vector<std::string>& log() { return log_lines_; }
+  /// Who spoke in each line that was ever written.
+  [[nodiscard]] const std::vector<LogSource>& log_sources() const { return log_sources_; }
 
   void run(Duration time) { runtime_.advance_by(time); }
   /// Runs until `done` or for at most `limit`; false: it did not come true.
@@ -145,6 +147,7 @@ class GatewayStage {
   void expect_nothing_held_back() const;
   ManualRuntime runtime_;
   std::vector<std::string> log_lines_;
+  std::vector<LogSource> log_sources_;
   Log log_;
   /// One of them.
   struct LinkOfLine {

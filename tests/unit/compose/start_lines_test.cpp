@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 std::vector<std::string> lines_of(const config::LoadedConfig& loaded) {
   std::vector<std::string> out;
-  for (const StartLine& line : start_lines(loaded, "9.8.7")) out.push_back(line.source + ": " + line.text);
+  for (const StartLine& line : start_lines(loaded, "9.8.7")) out.push_back(line.source.words + ": " + line.text);
   return out;
 }
 

@@ -31,6 +31,26 @@ TEST_F(Sessions, AnswerWhatIsGluedToAMalformedFrameAndClose) {
   EXPECT_EQ(plc.reply(), "closed") << "nothing counts after it";
 }
 
+TEST_F(Sessions, CountRequestsHowTheyEndedAndHowLongTheyTook) {
+  const RequestFigures& figures = desk.registry.figures;
+  plc.feed(frame(1, 1, bytes("03 00 64 00 01")));
+  EXPECT_EQ(plc.reply(), "03 02 00 00");
+  plc.feed(frame(2, 1, bytes("03 FF FF 00 01")));
+  EXPECT_EQ(plc.reply(), "83 02");
+  desk.port.slow = true;
+  plc.send("06 00 92 00 01");
+  desk.runtime.advance_by(30ms);
+  EXPECT_EQ(figures.requests, 3U);
+  EXPECT_EQ(figures.took.total(), 2U);
+  EXPECT_EQ(figures.took.sum_ns, 0U) << "what is read is answered at once";
+  desk.port.finish();
+  EXPECT_EQ(figures.took.total(), 3U);
+  EXPECT_EQ(figures.took.sum_ns, 30'000'000U);
+  EXPECT_EQ(figures.exceptions[2], 1U);
+  plc.feed(frame(3, 1, bytes("08 00 0A 00 00")));  // it clears the counters of function 8
+  EXPECT_GE(figures.requests, 3U);
+}
+
 // A gateway or a panel that is set to "RTU over TCP".
 TEST_F(Sessions, NameAClientThatSendsRtuFrames) {
   for (const char* request : {"01 03 00 64 00 02 85 D4", "01 03 00 00 00 02 C4 0B", "01 06 00 92 00 07 69 E5",
