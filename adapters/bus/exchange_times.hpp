@@ -19,9 +19,9 @@ class ExchangeTimes {
   [[nodiscard]] const ByClass& by_class() const { return by_class_; }
   /// Of all classes together.
   [[nodiscard]] Duration sum() const {
-    std::uint64_t ns = 0;
-    for (const TimeCounts& each : by_class_) ns += each.sum_ns;
-    return Duration(static_cast<std::int64_t>(ns));
+    TimeCounts all;
+    for (const TimeCounts& each : by_class_) all += each;
+    return Duration(static_cast<std::int64_t>(all.sum_ns));
   }
 
  private:

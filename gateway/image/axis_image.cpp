@@ -26,16 +26,6 @@ LogSource log_source(AxisNumber number, const std::string& name, const std::stri
   return {.words = name.empty() || name == plain ? plain : plain + " " + name, .axis = number, .bus = bus};
 }
 
-bool shows_the_same(const AxisImage& a, const AxisImage& b) {
-  if (a.link_state != b.link_state || a.axis_state != b.axis_state || a.motion_state != b.motion_state ||
-      a.motion_id != b.motion_id || a.alarms != b.alarms || a.loss_stop_ms != b.loss_stop_ms ||
-      a.supported != b.supported || a.valid_bits() != b.valid_bits() || shown_inputs(a) != shown_inputs(b) ||
-      shown_level_coils(a) != shown_level_coils(b) || a.lease.owner != b.lease.owner) {
-    return false;
-  }
-  for (const QuantityRow& each : quantity_table())
-    if (shown_value(a, each.quantity) != shown_value(b, each.quantity)) return false;
-  return true;
-}
+bool shows_the_same(const AxisImage& a, const AxisImage& b) { return view_of(a) == view_of(b); }
 
 }  // namespace axisgate

@@ -37,4 +37,21 @@ std::uint16_t shown_level_coils(const AxisImage& axis) {
   return axis.reachable() ? static_cast<std::uint16_t>(axis.level_coils & kLevelCoils) : std::uint16_t{0};
 }
 
+AxisView view_of(const AxisImage& axis) {
+  AxisView out{.link_state = axis.link_state,
+               .axis_state = axis.axis_state,
+               .motion_state = axis.motion_state,
+               .motion_id = axis.motion_id,
+               .alarms = axis.alarms,
+               .loss_stop_ms = axis.loss_stop_ms,
+               .supported = axis.supported,
+               .valid = axis.valid_bits(),
+               .inputs = shown_inputs(axis),
+               .level_coils = shown_level_coils(axis),
+               .owner = axis.lease.owner};
+  for (const QuantityRow& each : quantity_table())
+    out.values[static_cast<std::size_t>(each.quantity)] = shown_value(axis, each.quantity);
+  return out;
+}
+
 }  // namespace axisgate

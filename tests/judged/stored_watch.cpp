@@ -260,18 +260,20 @@ void StoredWatch::check_axis(Watched& watched, const model::AxisModel& axis) {
   const AxisImage& image = plant_.stage.axis(axis.number);
   const Instant now = plant_.stage.runtime().now();
   const bool canopen = tongue_of(plant_.subject) == Tongue::canopen;
-  const std::string name = "axis " + std::to_string(axis.number) + " ";
+  const auto name = [&] { return "axis " + std::to_string(axis.number) + " "; };
   if (canopen && image.reachable() && now - watched.heard_at > kLongestSilence)
-    violated(name + "counts as there, and has said nothing for long");
+    violated(name() + "counts as there, and has said nothing for long");
   for (const model::Binding& binding : axis.bindings) {
     const Sample& sample = image[binding.quantity];
     if (!sample.valid) continue;
-    const std::string what = name + std::string(axisgate::row(binding.quantity).name);
-    if (!image.reachable()) violated(what + " is valid of a drive that is not there");
-    if (canopen && sample.at < watched.started_at) violated(what + " is valid and of before its restart");
+    const auto is_valid = [&](const std::string& and_yet) {
+      violated(name() + std::string(axisgate::row(binding.quantity).name) + " is valid " + and_yet);
+    };
+    if (!image.reachable()) is_valid("of a drive that is not there");
+    if (canopen && sample.at < watched.started_at) is_valid("and of before its restart");
     if (binding.poll == model::PollClass::once) continue;
     if (now - sample.at > stale_after(watched, axis, binding) + std::chrono::milliseconds(2))
-      violated(what + " is valid and " + std::to_string((now - sample.at) / std::chrono::milliseconds(1)) + " ms old");
+      is_valid("and " + std::to_string((now - sample.at) / std::chrono::milliseconds(1)) + " ms old");
   }
 }
 

@@ -271,13 +271,14 @@ int Contract::send(std::size_t client, const Write& write) {
 }
 
 void Contract::drop_equal() {
+  if (worlds_.size() < 2) return;  // and most of the time there is one
   std::vector<World> different, timeless;
   for (World& world : worlds_) {
-    const World key = without_times(world);
+    World key = without_times(world);
     const auto found = std::ranges::find(timeless, key);
     if (found == timeless.end()) {
       different.push_back(std::move(world));
-      timeless.push_back(key);
+      timeless.push_back(std::move(key));
     } else {
       add_times(different[static_cast<std::size_t>(found - timeless.begin())], world);
     }

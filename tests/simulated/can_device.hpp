@@ -47,6 +47,12 @@ enum class MasterLoss : std::uint8_t { heartbeat, guarding };
 
 class CanDevice : public ObjectAccess {
  public:
+  // The number that a PDO carries of it; none: there is no such object. read() says the same, at the price of a buffer:
+  // a PDO asks in each millisecond.
+  virtual std::optional<std::uint32_t> mapped(ObjectKey key, Time now) {
+    const ObjectReply reply = read(key, now);
+    return reply.abort == 0 ? std::optional(little_endian(reply.bytes)) : std::nullopt;
+  }
   virtual bool may_be_mapped(ObjectKey key, PdoDirection direction) const = 0;
   // As another port would write it, measured values that nothing computes too; an abort code or 0.
   virtual std::uint32_t poke(ObjectKey key, std::int64_t value) = 0;

@@ -146,13 +146,16 @@ std::uint32_t CanPdos::write_mapping(Pdo& pdo, const Place& place, std::uint8_t 
   return 0;
 }
 
-CanBytes CanPdos::values_of(const Pdo& pdo, CanDevice& device, Time now) {
-  CanBytes bytes;
+BusFrame CanPdos::frame_of(const Pdo& pdo, CanDevice& device, Time now) {
+  BusFrame frame;
+  frame.id = pdo.id();
   for (std::size_t i = 0; i < pdo.mapped; ++i) {
-    const CanBytes value = device.read(object_in(pdo.map[i]), now).bytes;
-    bytes.insert(bytes.end(), value.begin(), value.end());
+    const auto value = device.mapped(object_in(pdo.map[i]), now);
+    for (std::size_t byte = 0; value && byte < bytes_in(pdo.map[i]); ++byte) {
+      frame.data.at(frame.size++) = static_cast<std::uint8_t>(*value >> (8 * byte));
+    }
   }
-  return bytes;
+  return frame;
 }
 
 void CanPdos::put_values(const Pdo& pdo, CanView bytes, CanDevice& device, std::uint64_t tag, Time now) {
@@ -174,12 +177,12 @@ void CanPdos::start(Time now) {
   waiting_.clear();
 }
 
-BusFrame CanPdos::send(std::size_t number, CanBytes bytes, Time now) {
+BusFrame CanPdos::send(std::size_t number, const BusFrame& frame, Time now) {
   Sending& sending = sending_[number];
-  sending.last = std::move(bytes);
+  sending.last = frame;
   sending.sent = true;
   sending.at = now;
-  return bus_frame(settings_.transmit[number].id(), sending.last);
+  return frame;
 }
 
 std::vector<BusFrame> CanPdos::due(CanDevice& device, Time now) {
@@ -195,8 +198,8 @@ std::vector<BusFrame> CanPdos::due(CanDevice& device, Time now) {
     const bool timer = pdo.event != 0 && now - sending.at >= pdo.event * one_millisecond;
     const bool inhibited = sending.sent && now - sending.at < pdo.inhibit * facts_.inhibit_unit;
     if (!timer && (inhibited || !looks)) continue;  // whatever it holds
-    CanBytes values = values_of(pdo, device, now);
-    if (timer || !sending.sent || values != sending.last) frames.push_back(send(number, std::move(values), now));
+    const BusFrame frame = frame_of(pdo, device, now);
+    if (timer || !sending.sent || frame != sending.last) frames.push_back(send(number, frame, now));
   }
   return frames;
 }
@@ -211,11 +214,11 @@ std::vector<BusFrame> CanPdos::sync(CanDevice& device, std::uint64_t tag, Time n
     const Pdo& pdo = settings_.transmit[number];
     Sending& sending = sending_[number];
     if (!pdo.valid() || pdo.mapped == 0 || pdo.type > last_synchronous) continue;
-    CanBytes values = values_of(pdo, device, now);
-    const bool turn = pdo.type == 0 ? !sending.sent || values != sending.last : ++sending.syncs >= pdo.type;
+    const BusFrame frame = frame_of(pdo, device, now);
+    const bool turn = pdo.type == 0 ? !sending.sent || frame != sending.last : ++sending.syncs >= pdo.type;
     if (!turn) continue;
     sending.syncs = 0;
-    frames.push_back(send(number, std::move(values), now));
+    frames.push_back(send(number, frame, now));
   }
   return frames;
 }
@@ -225,7 +228,7 @@ std::optional<BusFrame> CanPdos::asked_for(std::uint32_t id, CanDevice& device, 
   for (std::size_t number = 0; number < sending_.size(); ++number) {
     const Pdo& pdo = settings_.transmit[number];
     if (!pdo.valid() || pdo.mapped == 0 || pdo.id() != id || (pdo.cob_id & 0x40000000U) != 0) continue;
-    return send(number, values_of(pdo, device, now), now);
+    return send(number, frame_of(pdo, device, now), now);
   }
   return std::nullopt;
 }

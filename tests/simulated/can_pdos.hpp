@@ -73,7 +73,7 @@ class CanPdos {
     std::vector<Pdo> receive, transmit;
   };
   struct Sending {
-    CanBytes last;
+    BusFrame last;
     bool sent = false;
     Time at{};
     int syncs = 0;
@@ -95,9 +95,9 @@ class CanPdos {
   std::uint32_t write_parameter(Pdo& pdo, const Place& place, std::uint8_t sub, std::uint32_t value, std::size_t size);
   std::uint32_t write_mapping(Pdo& pdo, const Place& place, std::uint8_t sub, std::uint32_t value, CanDevice& device,
                               Time now);
-  static CanBytes values_of(const Pdo& pdo, CanDevice& device, Time now);
+  static BusFrame frame_of(const Pdo& pdo, CanDevice& device, Time now);
   static void put_values(const Pdo& pdo, CanView bytes, CanDevice& device, std::uint64_t tag, Time now);
-  BusFrame send(std::size_t number, CanBytes bytes, Time now);
+  BusFrame send(std::size_t number, const BusFrame& frame, Time now);
   bool by_event(const Pdo& pdo) const { return pdo.valid() && pdo.mapped > 0 && pdo.type >= 254; }
 
   PdoFacts facts_;

@@ -84,7 +84,7 @@ class CanopenNode final : public CanNode, private ObjectAccess {
     std::uint8_t width;
     bool writable;
   };
-  using Cells = std::map<ObjectKey, Cell>;
+  using Cells = boost::unordered_flat_map<ObjectKey, Cell, ObjectKey::Hash>;
   struct Consumer {
     std::optional<Time> deadline;  // once a heartbeat was heard
   };

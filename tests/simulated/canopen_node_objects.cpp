@@ -55,8 +55,7 @@ std::uint32_t CanopenNode::cell(ObjectKey key) const {
 }
 
 bool CanopenNode::own_index(std::uint16_t index) const {
-  const auto at = cells_.lower_bound({index, 0});
-  return at != cells_.end() && at->first.index == index;
+  return std::ranges::any_of(cells_, [index](const auto& cell) { return cell.first.index == index; });
 }
 
 namespace {

@@ -262,9 +262,13 @@ Refusal Cia402Drive::poke(ObjectKey key, std::int64_t value) {
 }
 
 std::optional<std::int64_t> Cia402Drive::peek(ObjectKey key) const {
-  if (entry(key) == nullptr) return std::nullopt;
-  if (const auto value = measured(key)) return value;
-  return objects_.get(key);
+  const ObjectEntry* found = entry(key);
+  return found == nullptr ? std::nullopt : std::optional(value_of(*found));
+}
+
+std::int64_t Cia402Drive::value_of(const ObjectEntry& entry) const {
+  const auto value = measured(entry.key());
+  return value ? *value : objects_.get(entry.key());
 }
 
 }  // namespace axisgate::simulated

@@ -66,6 +66,7 @@ class Cia402Drive {
   // What a world looks at.
   Cia402State state() const { return state_; }
   std::optional<std::int64_t> peek(ObjectKey key) const;
+  std::int64_t value_of(const ObjectEntry& entry) const;                      // of one that it has
   std::uint64_t writes(ObjectKey key) const { return objects_.writes(key); }  // accepted over the bus
   std::uint64_t restarts() const { return restarts_; }
   const std::deque<Transition>& transitions() const { return transitions_; }

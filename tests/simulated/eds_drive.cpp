@@ -211,7 +211,13 @@ ObjectReply EdsDrive::read(ObjectKey key, Time now) {
     return {0, {highest}};
   }
   const auto width = static_cast<std::size_t>(simulated::bytes_of(entry->type));
-  return {0, little_endian(static_cast<std::uint32_t>(*peek(key)), width)};
+  return {0, little_endian(static_cast<std::uint32_t>(value_of(*entry)), width)};
+}
+
+std::optional<std::uint32_t> EdsDrive::mapped(ObjectKey key, Time now) {
+  advance(now);
+  const ObjectEntry* entry = objects_.find(key);
+  return entry == nullptr ? CanDevice::mapped(key, now) : static_cast<std::uint32_t>(value_of(*entry));
 }
 
 std::uint32_t EdsDrive::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {

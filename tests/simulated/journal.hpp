@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the drives of a line saw and sent: one entry per request that reached a drive, tied together by its tag.
-// Promises a bound (the oldest entries go first) and a hash over all entries ever made, for "same seed, same run".
+// Promises a bound: the oldest entries go first.
 // Never alters what it records.
 #pragma once
 
@@ -32,33 +32,17 @@ class JournalOf {
 
   void record(ExchangeOf<Request> exchange) {
     ++recorded_;
-    mix(exchange.tag);
-    mix(static_cast<std::uint64_t>(exchange.received.count()));
-    mix(exchange.station);
-    for (const std::uint8_t byte : exchange.request) mix(byte);
-    mix(static_cast<std::uint64_t>(exchange.reply_ready.count()));
-    mix(exchange.sent.size());
-    for (const std::uint8_t byte : exchange.sent) mix(byte);
     if (capacity_ == 0) return;
     if (entries_.size() == capacity_) entries_.pop_front();
     entries_.push_back(std::move(exchange));
   }
   const std::deque<ExchangeOf<Request>>& entries() const { return entries_; }
   std::uint64_t recorded() const { return recorded_; }
-  std::uint64_t hash() const { return hash_; }
 
  private:
-  void mix(std::uint64_t value) {
-    for (int i = 0; i < 8; ++i) {
-      hash_ ^= (value >> (8 * i)) & 0xFFU;
-      hash_ *= 0x100000001B3U;
-    }
-  }
-
   std::size_t capacity_;
   std::deque<ExchangeOf<Request>> entries_;
   std::uint64_t recorded_ = 0;
-  std::uint64_t hash_ = 0xCBF29CE484222325U;  // FNV-1a
 };
 
 using Exchange = ExchangeOf<TenByteFrame>;

@@ -131,6 +131,12 @@ ObjectReply KeyaCanopen::read(ObjectKey key, Time now) {
   return {0, little_endian(static_cast<std::uint32_t>(value_of(key)), row->width)};
 }
 
+std::optional<std::uint32_t> KeyaCanopen::mapped(ObjectKey key, Time now) {
+  if (find(key) == nullptr) return std::nullopt;
+  drive_.advance(now);
+  return static_cast<std::uint32_t>(value_of(key));
+}
+
 std::uint32_t KeyaCanopen::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {
   const VendorObject* row = find(key);
   if (row == nullptr) return absent(key);

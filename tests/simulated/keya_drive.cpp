@@ -177,7 +177,7 @@ std::uint16_t KeyaDrive::loss_bit() const {
 }
 
 void KeyaDrive::watch(Time at) {
-  if (loss_bit() == 0 || !(enabled(KeyaMotorName::a) || enabled(KeyaMotorName::b))) return;
+  if (!(enabled(KeyaMotorName::a) || enabled(KeyaMotorName::b)) || loss_bit() == 0) return;
   if (at - last_control_.value_or(Time{}) <= watchdog_time) return;
   ++trips_;
   for (const KeyaMotorName motor : keya_motors) {
@@ -188,7 +188,7 @@ void KeyaDrive::watch(Time at) {
 
 bool KeyaDrive::quiet() const {
   if (boot_until_ || !at(KeyaMotorName::a).still() || !at(KeyaMotorName::b).still()) return false;
-  return loss_bit() == 0 || !(enabled(KeyaMotorName::a) || enabled(KeyaMotorName::b));
+  return !(enabled(KeyaMotorName::a) || enabled(KeyaMotorName::b)) || loss_bit() == 0;
 }
 
 void KeyaDrive::advance(Time now) {

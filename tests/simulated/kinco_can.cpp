@@ -43,10 +43,17 @@ std::string KincoCan::describe() const {
 }
 
 ObjectReply KincoCan::read(ObjectKey key, Time now) {
-  const auto value = drive_.read(key, now);
-  if (!value) return {abort_of(Refusal::no_such_object)};
-  const auto width = static_cast<std::size_t>(simulated::bytes_of(drive_.entry(key)->type));
-  return {0, little_endian(static_cast<std::uint32_t>(*value), width)};
+  drive_.advance(now);
+  const ObjectEntry* entry = drive_.entry(key);
+  if (entry == nullptr) return {abort_of(Refusal::no_such_object)};
+  const auto width = static_cast<std::size_t>(simulated::bytes_of(entry->type));
+  return {0, little_endian(static_cast<std::uint32_t>(drive_.value_of(*entry)), width)};
+}
+
+std::optional<std::uint32_t> KincoCan::mapped(ObjectKey key, Time now) {
+  drive_.advance(now);
+  const ObjectEntry* entry = drive_.entry(key);
+  return entry == nullptr ? std::nullopt : std::optional(static_cast<std::uint32_t>(drive_.value_of(*entry)));
 }
 
 std::uint32_t KincoCan::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {

@@ -41,6 +41,7 @@ class KincoCan final : public CanDevice {
   KincoDrive& drive() { return drive_; }
 
   ObjectReply read(ObjectKey key, Time now) override;
+  std::optional<std::uint32_t> mapped(ObjectKey key, Time now) override;
   std::uint32_t write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) override;
   bool may_be_mapped(ObjectKey key, PdoDirection direction) const override;
   std::uint32_t poke(ObjectKey key, std::int64_t value) override { return abort_of(drive_.poke(key, value)); }

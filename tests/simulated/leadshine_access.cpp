@@ -82,7 +82,13 @@ ObjectReply LeadshineDrive::read(ObjectKey key, Time now) {
     return {sdo_abort::no_such_sub};
   }
   const auto width = static_cast<std::size_t>(simulated::bytes_of(entry->type));
-  return {0, little_endian(static_cast<std::uint32_t>(*peek(key)), width)};
+  return {0, little_endian(static_cast<std::uint32_t>(value_of(*entry)), width)};
+}
+
+std::optional<std::uint32_t> LeadshineDrive::mapped(ObjectKey key, Time now) {
+  advance(now);
+  const ObjectEntry* entry = options_.more.contains(key) ? nullptr : objects_.find(key);
+  return entry == nullptr ? CanDevice::mapped(key, now) : static_cast<std::uint32_t>(value_of(*entry));
 }
 
 std::uint32_t LeadshineDrive::write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) {

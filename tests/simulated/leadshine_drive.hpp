@@ -45,6 +45,7 @@ class LeadshineDrive final : public CanDevice, public Cia402Drive {
 
   // What the node needs.
   ObjectReply read(ObjectKey key, Time now) override;
+  std::optional<std::uint32_t> mapped(ObjectKey key, Time now) override;
   std::uint32_t write(ObjectKey key, CanView bytes, std::uint64_t tag, Time now) override;
   bool may_be_mapped(ObjectKey key, PdoDirection direction) const override;
   std::uint32_t poke(ObjectKey key, std::int64_t value) override { return abort_of(Cia402Drive::poke(key, value)); }

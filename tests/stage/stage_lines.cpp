@@ -2,7 +2,9 @@
 #include "tests/stage/stage_lines.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <stdexcept>
+#include <tuple>
 
 #include "adapters/modbus_rtu/rtu_wire.hpp"
 #include "gateway/config/adapter_names.hpp"
@@ -24,6 +26,34 @@ struct Entry {
   std::array<std::optional<std::uint32_t>, 4> identity{};
 };
 
+bool same(const profile::ResolveInput& a, const profile::ResolveInput& b) {
+  const auto& [protocol, node, constants, identity, poll, axes] = a;
+  return std::tie(protocol, node, constants, identity, poll, axes) ==
+         std::tie(b.protocol, b.node, b.constants, b.identity, b.poll, b.axes);
+}
+
+model::DriveModel resolved(const profile::LoadedProfile& loaded, const profile::ResolveInput& input) {
+  auto model = profile::resolve(loaded, input);
+  if (auto* faults = std::get_if<std::vector<profile::Fault>>(&model)) throw std::runtime_error(text(faults->front()));
+  return std::get<model::DriveModel>(std::move(model));
+}
+
+/// The same, of a profile that is never another one: thousands of rigs have the same few drives.
+model::DriveModel resolved_once(const profile::LoadedProfile& loaded, const profile::ResolveInput& input) {
+  constexpr std::size_t kKept = 64;
+  struct Made {
+    const profile::LoadedProfile* of;
+    profile::ResolveInput input;
+    model::DriveModel model;
+  };
+  static std::deque<Made> made;
+  const auto known =
+      std::ranges::find_if(made, [&](const Made& each) { return each.of == &loaded && same(each.input, input); });
+  if (known != made.end()) return known->model;
+  if (made.size() == kKept) made.pop_front();
+  return made.emplace_back(Made{&loaded, input, resolved(loaded, input)}).model;
+}
+
 model::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
   // A test's own file, outside the source folder, may be another one the next time.
   std::optional<profile::LoadedProfile> own;
@@ -43,9 +73,7 @@ model::DriveModel resolved(Entry entry, const GatewayStage::Line& line) {
   LeaseRules off;
   off.on = false;
   for (profile::ResolveAxis& axis : input.axes) axis.lease = line.lease.value_or(off);
-  auto model = profile::resolve(loaded, input);
-  if (auto* faults = std::get_if<std::vector<profile::Fault>>(&model)) throw std::runtime_error(text(faults->front()));
-  return std::get<model::DriveModel>(std::move(model));
+  return own ? resolved(loaded, input) : resolved_once(loaded, input);
 }
 
 void name_kinco(Entry& entry, simulated::KincoType type) {

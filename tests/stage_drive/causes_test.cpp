@@ -40,7 +40,7 @@ class NamedBy : public testing::Test {
   }
   void look() {
     core_.watch_fault();
-    drive::show_state(core_, image_);
+    writer_.show_state();
   }
   [[nodiscard]] std::int64_t shown(Quantity quantity) { return shown_value(image_, quantity); }
 
@@ -50,6 +50,7 @@ class NamedBy : public testing::Test {
   AxisImage image_;
   drive::AxisCore core_{model(), model().axes[0], store_, turn_,
                         drive::Motion{model().axes[0].velocity_lag, image_.record}};
+  drive::AxisWriter writer_{core_, image_};
 };
 
 constexpr std::int64_t kEnabledWord = 0x0637, kFaultWord = 0x0618;

@@ -117,7 +117,7 @@ void Axis::on_blind(model::ObjectId object) {
 
 void Axis::on_adopted() {
   const Ownership& ownership = guard_.ownership();
-  if (!core_.facts().enabled() || ownership.owner() || !ownership.rules().on) return;
+  if (!core_.state().enabled() || ownership.owner() || !ownership.rules().on) return;
   guard_.adopted(core_.turn.now);
   settle();
 }
@@ -302,19 +302,19 @@ void Axis::observe() {
     on_unreachable();
   else if (status.known)
     guard_.shows(model::state_of(static_cast<std::uint16_t>(status.number)), status.exchange,
-                 core_.shows_torque() && core_.facts().moving, seen());
+                 core_.shows_torque() && core_.moving(), seen());
   if (core_.motion.take_homing_timeout()) guard_.homing_timed_out();
   settle();
 }
 
 Instant Axis::next_deadline() const {
   return std::min({core_.motion.deadline(), core_.fault.deadline(), guard_.next_deadline(core_.turn.now),
-                   jog_.limit_due(), queue_.next_deadline()});
+                   jog_.limit_due(), queue_.next_deadline(), shown_.stale_at()});
 }
 
 void Axis::publish() {
   guard_.ownership().set_armed(core_.turn.link != LinkState::online || core_.any_shared([](const AxisCore& axis) {
-    return model::holds_motor(axis.facts().state);
+    return model::holds_motor(axis.state().state);
   }));
   if (&lease_ != &image_.lease) image_.lease = lease_;
   // By whatever way a homing was asked for: from when it is asked until it was seen to be over.

@@ -67,6 +67,7 @@ class Axis final : private QueueOwner {
   void on_time();
   /// New samples, or time has passed: what runs, what has ended, which stops are due.
   void observe();
+  /// Of the rules below it, and of what publish() has shown.
   [[nodiscard]] Instant next_deadline() const;
   /// Brings the image up to date.
   void publish();

@@ -46,7 +46,7 @@ class AxisAdmission {
   /// What is not surely read disabled counts as enabled: the motor of a cut cable may be running.
   [[nodiscard]] bool may_be_enabled() const {
     return core_.turn.link != LinkState::online ||
-           core_.any_shared([](const AxisCore& axis) { return axis.facts().enabled(); });
+           core_.any_shared([](const AxisCore& axis) { return axis.state().enabled(); });
   }
   /// A run that is on, waits for the wire, or may go on unseen.
   [[nodiscard]] bool may_run(const PendingBatches& pending) const;

@@ -78,7 +78,7 @@ void AxisJog::observe(bool waits, Duration cycle) {
   ended_without_halt_ = ended_without_halt_ && core_.motion.running() == MotionKind::none;
   if (!jog_.active()) return;
   if (!core_.reachable()) return jog_.carry();
-  const bool goes_on = jog_.carried() && core_.facts().enabled();
+  const bool goes_on = jog_.carried() && core_.state().enabled();
   if (waits_ || goes_on || core_.motion.running() == MotionKind::velocity) return;
   jog_.end();  // a fault, a stop, or another command: only a new press jogs again
   ended_without_halt_ = true;

@@ -5,16 +5,10 @@
 
 #include <utility>
 
-#include "gateway/drive/axis/publisher.hpp"
-
 namespace axisgate::drive {
 
 AxisPublisher::AxisPublisher(AxisCore& core, AxisImage& image, AxisHost& host)
-    : core_(core), image_(image), host_(host) {
-  show_model();
-}
-
-void AxisPublisher::show_model() { drive::show_model(core_.model, image_); }
+    : core_(core), image_(image), host_(host), writer_(core, image), shown_(view_of(image)) {}
 
 void AxisPublisher::measure_cycle() {
   const Instant statusword_at = core_.store[core_.model.statusword].sent_at;
@@ -27,18 +21,17 @@ void AxisPublisher::publish(const Jog& jog, bool zero_may_move) {
   if (zero_may_move || zero_moves_) image_.zero_moved = core_.turn.now;
   zero_moves_ = zero_may_move;
   measure_cycle();
-  AxisImage before = image_;
-  before.lease.owner = std::exchange(owner_shown_, image_.lease.owner);  // it changes in the image itself
   image_.link_state = core_.turn.link;
-  show_state(core_, image_);
+  writer_.show_state();
   if (jog.active())
     image_.level_coils = static_cast<std::uint16_t>(image_.level_coils | (1U << jog_coil(jog.direction())));
   count();
-  const bool changed = !shows_the_same(before, image_);
+  const AxisView before = std::exchange(shown_, view_of(image_));
+  const bool changed = before != shown_;
   if (changed) {
     ++image_.sequence;
     if (image_.board != nullptr) image_.board->mark(image_.number);
-    tell_link(before);
+    tell_link(before.link_state);
   }
   if (!image_.reachable()) return;
   tell_fault(before);
@@ -61,13 +54,13 @@ void AxisPublisher::result(const WriteBatch& batch, CommandResult result, std::u
   image_.latest = {result, detail, batch.command_id, stop, batch.life, subject_of(batch), core_.turn.now};
 }
 
-void AxisPublisher::tell_link(const AxisImage& before) {
-  if (before.link_state != image_.link_state)
+void AxisPublisher::tell_link(LinkState before) {
+  if (before != image_.link_state)
     host_.event(image_.number, EventKind::link, static_cast<std::uint32_t>(image_.link_state),
-                "link " + std::string(text(before.link_state)) + " -> " + std::string(text(image_.link_state)));
+                "link " + std::string(text(before)) + " -> " + std::string(text(image_.link_state)));
 }
 
-void AxisPublisher::tell_changes(const AxisImage& before) {
+void AxisPublisher::tell_changes(const AxisView& before) {
   if (image_.has(AxisInput::homed) && !before.has(AxisInput::homed))
     host_.event(image_.number, EventKind::homed, 0, "homed");
   const std::uint32_t raised = image_.alarms & ~before.alarms;
@@ -87,7 +80,7 @@ void AxisPublisher::reset_asked(const std::string& by) {
 }
 
 // Once its cause is settled, and once more for another one that comes later.
-void AxisPublisher::tell_fault(const AxisImage& before) {
+void AxisPublisher::tell_fault(const AxisView& before) {
   const bool fault = image_.has(AxisInput::fault);
   if (fault && fault_.since == kLongAgo) {
     fault_.since = core_.turn.now;

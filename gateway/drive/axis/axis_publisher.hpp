@@ -7,9 +7,11 @@
 #include <string>
 
 #include "gateway/drive/axis/axis_host.hpp"
+#include "gateway/drive/axis/publisher.hpp"
 #include "gateway/drive/motion/jog.hpp"
 #include "gateway/drive/state/axis_core.hpp"
 #include "gateway/drive/watch/way_meter.hpp"
+#include "gateway/image/shown.hpp"
 
 namespace axisgate::drive {
 
@@ -18,7 +20,7 @@ class AxisPublisher {
   AxisPublisher(AxisCore& core, AxisImage& image, AxisHost& host);
 
   /// What does not change with its samples: what it has, its limits.
-  void show_model();
+  void show_model() { writer_.show_model(); }
   /// Brings the image up to date. `zero_may_move`: a homing or set_position is asked for or under way.
   void publish(const Jog& jog, bool zero_may_move);
 
@@ -31,25 +33,28 @@ class AxisPublisher {
   void reset_failed() { fault_.reset_by.clear(); }
   /// Between the last two samples of the statusword: the poll cycle as it really is.
   [[nodiscard]] Duration cycle() const { return cycle_; }
+  /// When publish() would show something else without a new sample.
+  [[nodiscard]] Instant stale_at() const { return writer_.stale_at(); }
   /// When the newest statusword was asked for.
   [[nodiscard]] Instant heard() const { return last_statusword_; }
 
  private:
   void measure_cycle();
-  void tell_link(const AxisImage& before);
-  void tell_changes(const AxisImage& before);
-  void tell_fault(const AxisImage& before);
+  void tell_link(LinkState before);
+  void tell_changes(const AxisView& before);
+  void tell_fault(const AxisView& before);
   void count();
 
   AxisCore& core_;
   AxisImage& image_;
   AxisHost& host_;
+  AxisWriter writer_;
+  AxisView shown_;  ///< as it was published last
   Duration cycle_{};
   Instant last_statusword_ = kLongAgo;
   bool zero_moves_ = false;         ///< when it was published last
   Instant enabled_until_ = kNever;  ///< its time with torque is counted until then; kNever: it has none
   WayMeter way_;
-  std::shared_ptr<const ClientLife> owner_shown_{};
   struct Fault {
     Instant since = kLongAgo;               ///< kLongAgo: there is none
     std::optional<std::uint16_t> logged{};  ///< its cause, as log and events have it

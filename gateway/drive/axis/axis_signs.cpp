@@ -65,7 +65,7 @@ void AxisSigns::observe_volatile(bool pending) {
   if (remembers || core_.turn.link != LinkState::online || pending) return;
   const bool speeds_lost = has_lost_speeds(core_);
   if (std::exchange(speeds_lost_, speeds_lost) || !speeds_lost) return;
-  const bool may_run = model::holds_motor(core_.facts().state);
+  const bool may_run = model::holds_motor(core_.state().state);
   core_.make(core_.model.controlword, 0);
   on_unseen_restart("it has restarted, too quickly to go offline: enable it anew");
   if (may_run) guard_.asks(Command::disable);

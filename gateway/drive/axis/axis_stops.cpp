@@ -28,7 +28,6 @@ std::optional<StopKind> kind_of(const WriteBatch& batch) {
 // --- The gateway's own -----------------------------------------------------------------------------------------------
 
 Guard::Seen Axis::seen() const {
-  const AxisFacts facts = core_.facts();
   const PendingBatches& pending = queue_.pending();
   const bool known = core_.store[core_.model.statusword].known && core_.store[core_.model.controlword].known;
   Guard::Seen seen;
@@ -36,7 +35,7 @@ Guard::Seen Axis::seen() const {
   seen.exchange = core_.store.exchange();
   seen.state = image_.axis_state;
   seen.torque = admission_.may_be_enabled();
-  seen.runs = core_.motion.running() != MotionKind::none || facts.moving || pending.starts_motion();
+  seen.runs = core_.motion.running() != MotionKind::none || core_.moving() || pending.starts_motion();
   seen.runs_raw = core_.motion.runs_raw();
   seen.stopping = core_.motion.stopping();
   // One owner answers for all that is shared.
@@ -58,7 +57,7 @@ void Axis::settle() {
     if (stop->command == Command::none) continue;
     const auto ended = [this, of_lease = stop->kind == EventKind::lease](const BatchResult& result) {
       // It is owed on: what the drive shows decides when it is sent again.
-      if (of_lease && result.outcome.code != Errc::ok && core_.facts().enabled())
+      if (of_lease && result.outcome.code != Errc::ok && core_.state().enabled())
         events_.event(EventKind::lease, 0, "the stop that the lease asked for has failed: it is tried again");
     };
     if (const auto result = send(*stop, ended)) ended(*result);
@@ -117,7 +116,7 @@ void Axis::accept_stop(const WriteBatch& batch, bool with_another) {
   const std::string why =
       fmt::format("{}, as axis {}: they are stopped as one", text(command_of(*kind)), image_.number);
   for (Axis* other : shared_) {
-    const bool said = !other->core_.facts().enabled();
+    const bool said = !other->core_.state().enabled();
     other->guard_.stop_with_another(command_of(*kind), batch.client, said ? std::string() : why);
     other->settle();
   }

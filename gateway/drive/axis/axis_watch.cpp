@@ -145,7 +145,7 @@ std::optional<AxisWatch::Stop> AxisWatch::take_unheeded() {
   if (!stop_holds()) shown_.reset();
   if (!shown_) return std::nullopt;
   const auto velocity = value(Quantity::velocity_actual, 1);
-  if (!velocity || !core_.facts().moving || core_.turn.link != LinkState::online) return std::nullopt;
+  if (!velocity || !core_.moving() || core_.turn.link != LinkState::online) return std::nullopt;
   const double speed = std::abs(velocity->value);
   const auto standstill = static_cast<double>(core_.model.standstill_velocity);
   const double noise = core_.model.position_commanded ? standstill : model::kTimesStandstill * standstill;
@@ -227,13 +227,14 @@ void AxisWatch::watch_units(const AxisFacts& facts, bool asked) {
 
 std::optional<TargetWatch::Seen> AxisWatch::standing_move(const AxisFacts& facts) const {
   const Motion& motion = core_.motion;
-  const auto position = value(Quantity::position_actual, core_.model.units_per_rev.to_double());
-  const bool known = position && core_.sent_to && core_.turn.link == LinkState::online && facts.enabled();
+  const bool known = core_.sent_to && core_.turn.link == LinkState::online && facts.enabled();
   if (!known || facts.moving || asked_ != move_) return std::nullopt;
   using End = TargetWatch::End;
   const bool runs = motion.running() == MotionKind::discrete;
   const bool shown = runs ? facts.target_reached : motion.arrived() || facts.motion_failed;
   if (runs == shown) return std::nullopt;
+  const auto position = value(Quantity::position_actual, core_.model.units_per_rev.to_double());
+  if (!position) return std::nullopt;
   return TargetWatch::Seen{
       .at = core_.turn.now,
       .move = move_,

@@ -16,8 +16,8 @@ Instant confirmed_statusword(const AxisCore& core) {
 }
 
 /// The words of the fault before are no value of this one, and words alone are none before its cause is known.
-bool is_of_unknown_cause(const AxisCore& core, const model::Binding& binding) {
-  if (binding.quantity != Quantity::vendor_error || !core.facts().faulted()) return false;
+bool is_of_unknown_cause(const AxisCore& core, const AxisFacts& facts, const model::Binding& binding) {
+  if (binding.quantity != Quantity::vendor_error || !facts.faulted()) return false;
   const auto old = [&](model::ObjectId id) {
     return id != model::kNoObject && !core.store[id].refused && !core.names_cause(id);
   };
@@ -26,7 +26,7 @@ bool is_of_unknown_cause(const AxisCore& core, const model::Binding& binding) {
 }
 
 // When the quantity was last confirmed: the oldest of its objects. kLongAgo where one of them never was.
-Instant confirmed_at(const AxisCore& core, const model::Binding& binding) {
+Instant confirmed_at(const AxisCore& core, const AxisFacts& facts, const model::Binding& binding) {
   Instant oldest = kNever;
   const auto look = [&](model::ObjectId id) {
     // The gateway's own words are as good as what they are made from.
@@ -37,7 +37,7 @@ Instant confirmed_at(const AxisCore& core, const model::Binding& binding) {
   const bool of_error = binding.quantity == Quantity::error_code;
   const Instant status = confirmed_statusword(core);
   // In a fault it is what this fault was named, or not yet, as long as the statusword shows the fault.
-  if ((of_error && core.facts().faulted()) || is_of_unknown_cause(core, binding)) return status;
+  if ((of_error && facts.faulted()) || is_of_unknown_cause(core, facts, binding)) return status;
   if (of_error)
     for (const model::ObjectId word : core.model.fault_words) look(word);
   look(binding.object);
@@ -109,9 +109,35 @@ std::optional<std::int64_t> shown_value(const AxisCore& core, const AxisFacts& f
       return *value & ~static_cast<std::int64_t>(model::statusword::kTargetReached);
     }
     default:
-      if (is_of_another_mode(core, facts, binding) || is_of_unknown_cause(core, binding)) return std::nullopt;
+      if (is_of_another_mode(core, facts, binding) || is_of_unknown_cause(core, facts, binding)) return std::nullopt;
       return core.value(binding.quantity);
   }
+}
+
+/// Its sample hangs on more than on its own objects: on the state, the mode, or what names a fault.
+bool hangs_on_state(const AxisCore& core, const model::Binding& binding) {
+  switch (binding.quantity) {
+    case Quantity::error_code:
+    case Quantity::vendor_error:
+    case Quantity::mode_display:
+    case Quantity::statusword:
+      return true;
+    default:
+      break;
+  }
+  return binding.object != model::kNoObject && !core.object(binding.object).aliases.empty();
+}
+
+std::uint64_t newest_change(const AxisCore& core, const model::Binding& binding) {
+  std::uint64_t newest = 1;
+  const auto look = [&](model::ObjectId id) {
+    if (id == model::kNoObject) return;
+    newest = std::max(newest, core.store.changed(id));
+    if (core.object(id).emulated) newest = std::max(newest, core.store.changed(core.model.statusword));
+  };
+  look(binding.object);
+  for (const model::BitField& field : binding.bits) look(field.object);
+  return newest;
 }
 
 std::uint16_t inputs_of(const AxisCore& core, const AxisImage& image, const AxisFacts& facts) {
@@ -155,67 +181,70 @@ std::uint32_t alarms_of(const AxisCore& core) {
 
 }  // namespace
 
-void show_model(const model::AxisModel& model, AxisImage& image) {
-  static_cast<Capabilities&>(image) = model;
+void AxisWriter::show_model() {
+  const model::AxisModel& model = core_.model;
+  static_cast<Capabilities&>(image_) = model;
   if (model.lease.on)
     for (const Command command : {Command::release, Command::take_over})
-      image.supported_commands |= 1U << static_cast<unsigned>(command);
-  image.supported_modes = model.supported_modes;
-  image.units_per_rev = model.units_per_rev;
-  image.rated_speed = model.rated_speed;
+      image_.supported_commands |= 1U << static_cast<unsigned>(command);
+  image_.supported_modes = model.supported_modes;
+  image_.units_per_rev = model.units_per_rev;
+  image_.rated_speed = model.rated_speed;
   for (const QuantityRow& row : quantity_table())
-    image.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
+    image_.limits[static_cast<std::size_t>(row.quantity)] = range_of(row.type);
   for (const model::Binding& binding : model.bindings)
-    image.limits[static_cast<std::size_t>(binding.quantity)] = binding.limits;
+    image_.limits[static_cast<std::size_t>(binding.quantity)] = binding.limits;
+  made_.assign(model.bindings.size(), Made{});
 }
 
-void show_state(const AxisCore& core, AxisImage& image) {
-  const AxisFacts facts = core.facts();
-  image.oldest_cyclic = kNever;
-  for (const model::Binding& binding : core.model.bindings) {
-    Sample& sample = image[binding.quantity];
-    // What the drive refused is not supported; a drive changed for another may have it again.
-    const std::uint32_t mask = bit(binding.quantity);
-    image.supported =
-        refused(core, binding) ? image.supported & ~mask : image.supported | (core.model.supported & mask);
-    const Instant at = confirmed_at(core, binding);
-    const auto value = at == kLongAgo ? std::nullopt : shown_value(core, facts, binding);
-    const Range fits = range_of(row(binding.quantity).type);
-    const bool good = value && fits.holds(*value);
-    if (good) {
-      sample.value = *value;
-      sample.received = true;
-      sample.at = at;
-    } else if (at != kLongAgo && !is_of_another_mode(core, facts, binding)) {
-      sample.received = false;  // there is a number, and no register for it: the last one that fitted is not it
-    }
-    const Duration limit = stale_after(core, binding);
-    sample.valid = good && image.reachable() && (limit == Duration::max() || core.turn.now - at <= limit);
-    const bool cyclic = binding.poll == model::PollClass::fast || binding.poll == model::PollClass::normal;
-    if (cyclic && !refused(core, binding) && !is_told_alone(core, binding))
-      image.oldest_cyclic = std::min(image.oldest_cyclic, at);
+void AxisWriter::make(const model::Binding& binding, const AxisFacts& facts, Made& made) {
+  // What the drive refused is not supported; a drive changed for another may have it again.
+  const std::uint32_t mask = bit(binding.quantity);
+  const bool is_refused = refused(core_, binding);
+  image_.supported = is_refused ? image_.supported & ~mask : image_.supported | (core_.model.supported & mask);
+  const Instant at = confirmed_at(core_, facts, binding);
+  const auto value = at == kLongAgo ? std::nullopt : shown_value(core_, facts, binding);
+  Sample& sample = image_[binding.quantity];
+  made.good = value && range_of(row(binding.quantity).type).holds(*value);
+  if (made.good) {
+    sample.value = *value;
+    sample.received = true;
+    sample.at = at;
+  } else if (at != kLongAgo && !is_of_another_mode(core_, facts, binding)) {
+    sample.received = false;  // there is a number, and no register for it: the last one that fitted is not it
   }
-  if (image.oldest_cyclic == kNever) image.oldest_cyclic = kLongAgo;
-  image.alarms = alarms_of(core);
-  image.loss_stop_ms = core.loss_stop_ms;
-  image.axis_state = core.motion.axis_state(facts);
-  image.motion_state = core.motion.state();
-  image.motion_id = core.motion.id();
-  image.inputs = inputs_of(core, image, facts);
-  const bool halted = (core.controlword() & model::controlword::kHalt) != 0;
-  image.level_coils = static_cast<std::uint16_t>((facts.enabled() ? 1 : 0) | (halted ? 1 << 3 : 0) |
-                                                 (core.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
+  const Duration limit = stale_after(core_, binding);
+  made.at = at;
+  made.stale_at = limit == Duration::max() || at == kLongAgo ? kNever : at + limit + Duration{1};
+  const bool polled = binding.poll == model::PollClass::fast || binding.poll == model::PollClass::normal;
+  made.cyclic = polled && !is_refused && !is_told_alone(core_, binding);
 }
 
-Instant stale_deadline(const AxisCore& core) {
-  Instant next = kNever;
-  for (const model::Binding& binding : core.model.bindings) {
-    const Duration limit = stale_after(core, binding);
-    const Instant at = confirmed_at(core, binding);
-    if (limit == Duration::max() || at == kLongAgo || core.turn.now - at > limit) continue;
-    next = std::min(next, at + limit + Duration{1});
+void AxisWriter::show_state() {
+  const AxisFacts facts = core_.facts();
+  const Instant now = core_.turn.now;
+  Instant oldest = kNever;
+  stale_at_ = kNever;
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const model::Binding& binding = core_.model.bindings[i];
+    Made& made = made_[i];
+    const std::uint64_t newest = newest_change(core_, binding);
+    if (made.of != newest || hangs_on_state(core_, binding)) make(binding, facts, made);
+    made.of = newest;
+    image_[binding.quantity].valid = made.good && image_.reachable() && now < made.stale_at;
+    if (now < made.stale_at) stale_at_ = std::min(stale_at_, made.stale_at);
+    if (made.cyclic) oldest = std::min(oldest, made.at);
   }
-  return next;
+  image_.oldest_cyclic = oldest == kNever ? kLongAgo : oldest;
+  image_.alarms = alarms_of(core_);
+  image_.loss_stop_ms = core_.loss_stop_ms;
+  image_.axis_state = core_.motion.axis_state(facts);
+  image_.motion_state = core_.motion.state();
+  image_.motion_id = core_.motion.id();
+  image_.inputs = inputs_of(core_, image_, facts);
+  const bool halted = (core_.controlword() & model::controlword::kHalt) != 0;
+  image_.level_coils = static_cast<std::uint16_t>((facts.enabled() ? 1 : 0) | (halted ? 1 << 3 : 0) |
+                                                  (core_.motion.running() == MotionKind::velocity ? 1 << 7 : 0));
 }
 
 namespace {

@@ -269,7 +269,7 @@ std::optional<CommandSequence::Move> CommandSequence::advance_wait(const Action&
     if (action.optional) {
       // Nobody answers a frame, and the motor has not told either that it was heard.
       if (phase_ == Phase::stop && !core_.drive.composed.empty() && core_.is_continuous(core_.mode_in_force()) &&
-          core_.facts().moving)
+          core_.moving())
         stop_attempt_.withhold();
       pop();
     } else {
@@ -303,7 +303,7 @@ std::optional<CommandSequence::Move> CommandSequence::advance_settle() const {
 
 // The drive may answer such a write all the same, or answers none at all: whether the motor could obey, its state
 // tells.
-bool CommandSequence::has_lost_torque() const { return moved_by_write_ && !core_.facts().enabled(); }
+bool CommandSequence::has_lost_torque() const { return moved_by_write_ && !core_.state().enabled(); }
 
 bool CommandSequence::passes_resync() {
   if (phase_ != Phase::stop || writes_.verifying) return false;

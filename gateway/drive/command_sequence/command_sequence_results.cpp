@@ -74,7 +74,7 @@ void CommandSequence::on_write(const Action& action, const bus::ExchangeResult& 
         else
           core_.store.invalidate(each.object);
         moved_by_write_ =
-            moved_by_write_ || (phase_ != Phase::stop && is_command_of_motion(each.object) && core_.facts().enabled());
+            moved_by_write_ || (phase_ != Phase::stop && is_command_of_motion(each.object) && core_.state().enabled());
       }
       writes_.acknowledged = true;
       if (by_mailbox_) core_.store.invalidate_all(action.object);
@@ -194,7 +194,8 @@ std::string CommandSequence::missed() const {
   const bool since = state.known && state.exchange > writes_.acknowledged_by;
   const std::string read = ", read " + (since ? hex(until.object, state.number) : std::string("nothing since"));
   if (until.object == core_.model.statusword && until.mask == kFaultBit)
-    return out + (since ? ": the fault's cause is still there" : ": whether the fault has gone is not known") + read;
+    return out + (since ? ": the fault's cause is still there, statusword reads " + hex(until.object, state.number)
+                        : ": whether the fault has gone is not known" + read);
   out += ": awaited " + core_.object(until.object).name;
   if (until.mask != 0) out += fmt::format(" & {}", hex(until.object, until.mask));
   out += negated ? " other than" : " =";
@@ -208,7 +209,7 @@ std::string CommandSequence::missed() const {
 // the motor follow what it did not follow before.
 Command CommandSequence::withdrawn_by() const {
   if (is_stop() || writes_.count == 0) return Command::none;
-  const bool enabled = core_.facts().enabled();
+  const bool enabled = core_.state().enabled();
   if (batch_.command == Command::enable || (asks_to_enable(batch_) && !enabled)) return Command::disable;
   const bool starts = needs_ready(batch_.command);
   const bool follows = batch_.mode && enabled;
@@ -280,7 +281,7 @@ void CommandSequence::reach(const Action& action) {
       break;
     case Mark::mode_changed:
       motion.mode_changed();
-      if (phase_ == Phase::mode && core_.facts().enabled() && core_.is_continuous(core_.mode_in_force()))
+      if (phase_ == Phase::mode && core_.state().enabled() && core_.is_continuous(core_.mode_in_force()))
         motion.run_raw();
       break;
     case Mark::values_invalidated:

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "gateway/drive/axis/publisher.hpp"
 #include "gateway/drive/plan/admission.hpp"
 #include "gateway/drive/plan/write_exchange.hpp"
 
@@ -147,7 +146,7 @@ bool Drive::may_leave(const Written& write, const Sender& sender) {
     Sender as_asked = sender;
     if (axis.get() != on_wire_.axis && !axis->core().model.shares.empty()) {
       // A stop of it has stopped the sender as well, and no word enables what has failed.
-      if (axis->core().facts().faulted()) continue;
+      if (axis->core().state().faulted()) continue;
       if (sender.asked) as_asked.asked = axis->core().motion.record().now();
     }
     const Errc code = held_on_way_out(axis->core(), write.object, write.number, as_asked);
@@ -276,7 +275,7 @@ void Drive::bring_up_to_date() {
   Instant next = kNever;
   for (auto& axis : core_.axes) {
     axis->publish();
-    next = std::min({next, axis->next_deadline(), stale_deadline(axis->core())});
+    next = std::min(next, axis->next_deadline());
     if (axis->queue().has_due()) next = core_.turn.now;
   }
   // The keep-alive, which may take any turn, is the last that asks for one of its own.

@@ -18,15 +18,15 @@ std::vector<MotorShows> DriveControl::motors_show(const Turn& turn) const {
   std::vector<MotorShows> out;
   const bool trusted = turn.online && !turn.suspect;
   for (const AxisTurn& axis : turn.axes) {
-    const AxisFacts facts = axis.core.facts();
+    const ShownState now = axis.core.state();
     const auto& state = axis.core.model.virtual_axis;
     const bool held =
         state && shown_lately(state->enabled.object, turn.now) && shown_lately(state->fault.object, turn.now);
-    MotorShows shows{.enabled = trusted && held && facts.enabled(),
-                     .enabling = axis.enabling && !facts.faulted(),
+    MotorShows shows{.enabled = trusted && held && now.enabled(),
+                     .enabling = axis.enabling && !now.faulted(),
                      .disabling = axis.disabling,
-                     .moving = facts.moving,
-                     .mode = facts.mode};
+                     .moving = axis.core.moving(),
+                     .mode = axis.core.mode_in_force()};
     const model::Binding* position = axis.core.model.binding(Quantity::position_actual);
     if (position != nullptr && position->object != model::kNoObject && store_[position->object].known)
       shows.position = store_[position->object].number;

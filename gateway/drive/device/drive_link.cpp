@@ -171,7 +171,8 @@ void LinkTask::on_gone() {
 void PollTask::hurry(const Axis& axis) {
   const AxisCore& core = axis.core();
   if (core.motion.end_wants_position()) core_.reads.first(core.object_of(Quantity::position_actual));
-  if (core.motion.rest_wants_sample(core.facts())) core_.reads.hurry(core.motion_object(), core_.turn.now);
+  if (core.motion.stopping() && core.motion.rest_wants_sample(core.facts()))
+    core_.reads.hurry(core.motion_object(), core_.turn.now);
 }
 
 void PollTask::on_values(const bus::ReplyFields& fields) {
@@ -187,7 +188,7 @@ void PollTask::on_values(const bus::ReplyFields& fields) {
 
 Instant PollTask::deadline() {
   for (auto& axis : core_.axes) {
-    const bool moves = axis->core().motion.running() != MotionKind::none || axis->core().facts().moving;
+    const bool moves = axis->core().motion.running() != MotionKind::none || axis->core().moving();
     core_.reads.watch_position(axis->core().model, moves, core_.turn.now);
   }
   return kNever;

@@ -16,9 +16,8 @@ bool is_dds(const ClientLife& client) { return client.strength.has_value(); }
 /// advice.
 std::string silence(const ClientLife& owner, const LeaseRules& rules, Duration timeout) {
   if (!owner.connected && !is_dds(owner))
-    return owner.is_address
-               ? " (a host that writes so seldom needs a longer \"timeout_ms\" of the lease, or \"lease\": null)"
-               : " (one-shot tools need \"lease\": null or \"client\": \"address\")";
+    return owner.is_address ? " (a host that writes so seldom needs a longer \"timeout_ms\" of the lease)"
+                            : " (one-shot tools need \"lease\": null or \"client\": \"address\")";
   std::string_view missed = owner.is_address ? "has written nothing" : "has asked nothing";
   if (rules.renew == LeaseRenewal::write) missed = "has written nothing to the axis";
   if (rules.renew == LeaseRenewal::heartbeat) missed = "has shown no heartbeat";

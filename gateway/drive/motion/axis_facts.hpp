@@ -12,11 +12,20 @@
 
 namespace axisgate::drive {
 
-/// What the drive shows, from its newest samples.
-struct AxisFacts {
-  Instant at = kLongAgo;   ///< now
+/// What its newest statusword shows.
+struct ShownState {
   bool reachable = false;  ///< link_state online or suspect
   model::State402 state = model::State402::not_ready_to_switch_on;
+
+  [[nodiscard]] bool enabled() const { return reachable && state == model::State402::operation_enabled; }
+  [[nodiscard]] bool faulted() const {
+    return state == model::State402::fault || state == model::State402::fault_reaction_active;
+  }
+};
+
+/// What the drive shows, from its newest samples.
+struct AxisFacts : ShownState {
+  Instant at = kLongAgo;           ///< now
   int mode = 0;                    ///< mode in force, unified number
   bool own_velocity_mode = false;  ///< and it is, or may be, one of the drive's own that follows a target velocity
   /// The controlword in effect has the bits of operation enabled: without them the axis is on its way out of it,
@@ -34,11 +43,6 @@ struct AxisFacts {
   bool motion_failed = false;             ///< a move has ended elsewhere than at its target, a run by its drive
   std::uint64_t statusword_exchange = 0;  ///< the exchange that gave the newest statusword
   std::optional<std::uint64_t> position_exchange{};  ///< and the newest position; none: nothing tells of it
-
-  [[nodiscard]] bool enabled() const { return reachable && state == model::State402::operation_enabled; }
-  [[nodiscard]] bool faulted() const {
-    return state == model::State402::fault || state == model::State402::fault_reaction_active;
-  }
 };
 
 /// A target velocity or torque acts at once in the mode in force.

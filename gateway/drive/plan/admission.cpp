@@ -330,7 +330,7 @@ bool starts_motion(const AxisCore& core, const WriteBatch& batch) {
   if (starts_motion(batch.command)) return true;
   if (!batch.controlword) return false;
   // What waits before it may enable the axis.
-  const bool enabled = core.facts().enabled();
+  const bool enabled = core.state().enabled();
   return word_starts(core, *batch.controlword, true) || (!enabled && word_starts(core, *batch.controlword, false));
 }
 

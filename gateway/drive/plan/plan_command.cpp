@@ -55,7 +55,7 @@ std::optional<std::int16_t> mode_needed(const AxisCore& core, Command command) {
     default:
       return std::nullopt;
   }
-  if (core.facts().enabled() || core.mode_chosen || core.model.mode == model::kNoObject) return std::nullopt;
+  if (core.state().enabled() || core.mode_chosen || core.model.mode == model::kNoObject) return std::nullopt;
   // Enabling in a mode that nobody chose must not follow pulses, as a drive's own mode may that it has left its factory
   // in. The first that the drive has: a frequency converter has the velocity alone.
   static constexpr std::array kQuiet{kModePosition, kModeVelocity, kModeTorque, kModeHoming};
@@ -154,7 +154,7 @@ Plan plan_enable(const AxisCore& core) {
 
 Plan plan_fault_reset(const AxisCore& core) {
   Plan plan;
-  if (!core.facts().faulted()) return core.state_is_of_now() ? plan : look_at_state(core);
+  if (!core.state().faulted()) return core.state_is_of_now() ? plan : look_at_state(core);
   if (add_command_steps(core, Command::fault_reset, plan)) plan.add(Action::at(Mark::values_invalidated));
   return plan;
 }
@@ -181,7 +181,7 @@ Plan plan_move(const AxisCore& core, Command command) {
   if (!raw) return Plan::refuse(Errc::bad_value);
   Plan plan;
   // A drive that follows its target would take even a distance for one.
-  if (core.facts().enabled() && (core.controlword() & core.model.cia402.follow_bits) != 0)
+  if (core.state().enabled() && (core.controlword() & core.model.cia402.follow_bits) != 0)
     plan.add(Action::write(core.model.controlword, core.controlword() & kEnabledBits));
   add_speeds(core, 1, plan);
   Plan steps;

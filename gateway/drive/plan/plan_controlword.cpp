@@ -43,8 +43,8 @@ Errc judge_shared(const AxisCore& core, Command command) {
   if (command != Command::enable) return Errc::ok;
   if (core.motion.latched_by_another()) return Errc::state_unsuitable;
   for (const AxisCore* other : core.shared())
-    if (other->facts().faulted() || other->alarm(AxisAlarm::local_control)) return Errc::state_unsuitable;
-  return !core.facts().enabled() && core.another_runs() ? Errc::busy : Errc::ok;
+    if (other->state().faulted() || other->alarm(AxisAlarm::local_control)) return Errc::state_unsuitable;
+  return !core.state().enabled() && core.another_runs() ? Errc::busy : Errc::ok;
 }
 
 // Bit 4 rising starts; so does the maker's bit that makes the drive follow its target, even in the word that enables.

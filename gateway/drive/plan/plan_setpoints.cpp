@@ -155,7 +155,7 @@ void add_own_running_targets(const AxisCore& core, bool keep_wanted, Plan& plan,
     const model::Binding* binding = core.model.binding(q);
     if (binding == nullptr || !binding->writable || moves_by_write(core, binding->object)) continue;
     Wanted wanted = keep_wanted ? core.running_target(q).value_or(Wanted{}) : Wanted{};
-    if (core.motion.record().set_aside_since(wanted.at) && core.facts().enabled()) wanted = {};
+    if (core.motion.record().set_aside_since(wanted.at) && core.state().enabled()) wanted = {};
     add_running_target(core, binding->object, raw_of(core, *binding, wanted).value_or(0), plan, look_again);
   }
 }
@@ -233,7 +233,7 @@ namespace {
 // A set-point that changed while the axis runs acts on some drives only if they are told to run once more.
 void add_changed_run(const AxisCore& core, const WriteBatch& batch, Plan& plan) {
   const auto& run = core.model.command(Command::run_velocity);
-  if (!run || !run->repeat_on_change || !core.facts().enabled() || batch.command == Command::run_velocity) return;
+  if (!run || !run->repeat_on_change || !core.state().enabled() || batch.command == Command::run_velocity) return;
   const model::Binding* binding = core.model.binding(Quantity::target_velocity);
   if (!writes(plan, binding->object)) return;
   // Nobody has seen it for a moment: it may have ended, by a restart perhaps, and would be started anew.
@@ -325,7 +325,7 @@ Plan plan_raw_mode(const AxisCore& core, std::int16_t mode) {
   if (core.is_virtual()) return plan_virtual_mode(core, mode, true);
   Plan change = plan_mode(core, mode);
   Plan plan;
-  if (!change.refused() && !change.actions.empty() && core.facts().enabled()) {
+  if (!change.refused() && !change.actions.empty() && core.state().enabled()) {
     if (core.is_continuous(mode)) {
       add_running_targets(core, true, plan);
       add_speeds(core, mode, plan);

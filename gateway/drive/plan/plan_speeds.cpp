@@ -99,7 +99,7 @@ void add_speeds(const AxisCore& core, int mode, Plan& plan) {
     // Nobody knows what it holds, and it may be beyond the limit.
     if (binding->limited && state.unresponsive) plan.refusal = refusal(Errc::state_unsuitable);
     const bool limited = binding->limits.max < range_of(row(each).type).max;
-    if (state.out_of_sight && limited && state.known && core.facts().enabled()) {
+    if (state.out_of_sight && limited && state.known && core.state().enabled()) {
       plan.add(Action::read(binding->object));
       look_again = true;
       continue;

@@ -86,7 +86,7 @@ Plan halt(const AxisCore& core) {
     if (core.turn.link != LinkState::online || !status.known || !word.known || word.unsure) return quick_stop(core);
     if (!status.cached) return look_at_state(core);
     const bool asked_for = model::enables(core.controlword());
-    if (!asked_for || !core.facts().enabled()) {
+    if (!asked_for || !core.state().enabled()) {
       // An enable may have gone out since that was read.
       if (asked_for && !core.state_is_of_now()) return look_at_state(core);
       plan.add(Action::read(core.model.statusword));
@@ -96,7 +96,7 @@ Plan halt(const AxisCore& core) {
     }
   }
   add_steps(core, *steps, plan);
-  if (core.facts().enabled()) add_virtual_controlword(core, model::controlword::kHalt | kEnabled, plan);
+  if (core.state().enabled()) add_virtual_controlword(core, model::controlword::kHalt | kEnabled, plan);
   add_motor_obeys(core, plan);  // no state tells of it
   return plan;
 }
@@ -119,7 +119,7 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
   // A drive that stays in quick stop active (605Ah 5 to 7) leaves it by neither 6 nor 7 (CiA 402-2, figure 2): that it
   // is not enabled is all that they can be seen by.
   const bool stays =
-      core.facts().state == model::State402::quick_stop_active && request != model::Request402::disable_voltage;
+      core.state().state == model::State402::quick_stop_active && request != model::Request402::disable_voltage;
   const bool torque_may_stay = request == model::Request402::quick_stop || stays;
   plan.add(Action::wait(torque_may_stay ? not_enabled(core) : torque_off(core), kStopLimit));
   if (torque_may_stay && !core.is_virtual()) add_motor_obeys(core, plan);
@@ -133,7 +133,7 @@ Plan by_controlword(const AxisCore& core, std::uint16_t word) {
 bool asks_for_missing_halt(const AxisCore& core, const WriteBatch& batch) {
   if (!batch.controlword || batch.command != Command::none || !model::enables(*batch.controlword)) return false;
   const bool rises = (*batch.controlword & ~core.controlword() & model::controlword::kHalt) != 0;
-  return rises && core.facts().enabled() && !halts_by_word(core);
+  return rises && core.state().enabled() && !halts_by_word(core);
 }
 
 Plan look_at_state(const AxisCore& core) {
@@ -196,7 +196,7 @@ void add_end_of_halt(const AxisCore& core, int mode_after, Plan& plan) {
     plan.add(Action::write(core.model.controlword, word & static_cast<std::uint16_t>(~model::controlword::kHalt)));
     return;
   }
-  if (!core.facts().enabled()) {
+  if (!core.state().enabled()) {
     plan.add(Action::write(core.model.controlword, kShutdown));  // ending a halt never enables
     return;
   }

@@ -11,7 +11,7 @@ namespace {
 // 6 or 7 in a block of registers is no stop, but what was enabled ends by it all the same.
 Plan plan_close(const AxisCore& core) {
   Plan plan;
-  if (core.facts().enabled()) static_cast<void>(add_command_steps(core, Command::disable, plan));
+  if (core.state().enabled()) static_cast<void>(add_command_steps(core, Command::disable, plan));
   return plan;
 }
 

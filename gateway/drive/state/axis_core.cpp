@@ -9,10 +9,13 @@ namespace {
 
 constexpr std::int64_t kNoMode = 0;  // which mode is in force nobody knows
 
+bool holds(const AxisCore& core, const model::Condition& condition) {
+  const ObjectState& s = core.store[condition.object];
+  return s.known && condition.holds(core.object(condition.object), static_cast<std::uint32_t>(s.number));
+}
+
 bool holds(const AxisCore& core, const std::optional<model::Condition>& condition) {
-  if (!condition) return false;
-  const ObjectState& s = core.store[condition->object];
-  return s.known && condition->holds(core.object(condition->object), static_cast<std::uint32_t>(s.number));
+  return condition && holds(core, *condition);
 }
 
 // A composed quantity: bit fields of one or more objects side by side.
@@ -65,13 +68,24 @@ std::uint16_t AxisCore::controlword() const {
   return s.known ? static_cast<std::uint16_t>(s.number) : 0;
 }
 
+ShownState AxisCore::state() const {
+  ShownState out{.reachable = reachable()};
+  const ObjectState& status = store[model.statusword];
+  if (status.known) out.state = model::state_of(static_cast<std::uint16_t>(status.number));
+  return out;
+}
+
+bool AxisCore::moving() const {
+  if (model.moving) return holds(*this, model.moving);
+  const auto velocity = value(Quantity::velocity_actual);
+  return velocity && std::llabs(*velocity) > model.standstill_velocity;
+}
+
 AxisFacts AxisCore::facts() const {
-  AxisFacts facts;
+  AxisFacts facts{state()};
   facts.at = turn.now;
-  facts.reachable = reachable();
   const ObjectState& status = store[model.statusword];
   const auto word = static_cast<std::uint16_t>(status.known ? status.number : 0);
-  facts.state = status.known ? model::state_of(word) : model::State402::not_ready_to_switch_on;
   facts.statusword_exchange = status.exchange;
   if (const model::ObjectId id = object_of(Quantity::position_actual); id != model::kNoObject)
     facts.position_exchange = store[id].exchange;
@@ -86,11 +100,7 @@ AxisFacts AxisCore::facts() const {
   facts.homing_failed =
       is_virtual() ? machine.homing_failed() : facts.reference_tells && holds(*this, model.homing_failed);
   facts.motion_failed = machine.motion_failed();
-  if (model.moving) {
-    facts.moving = holds(*this, model.moving);
-  } else if (const auto velocity = value(Quantity::velocity_actual)) {
-    facts.moving = std::llabs(*velocity) > model.standstill_velocity;
-  }
+  facts.moving = moving();
   // Found turning in a mode that nobody can tell, it may follow a velocity: it is stopped and led as if it did.
   const bool tells_no_mode = is_virtual() && model.virtual_axis->gate_only;
   facts.own_velocity_mode = facts.own_velocity_mode || (tells_no_mode && facts.moving && motion.found_at_start());
@@ -127,7 +137,7 @@ std::optional<VirtualAxis::Seen> AxisCore::seen() const {
   out.enabled = holds(*this, by.enabled);
   out.fault = holds(*this, by.fault);
   out.limit = holds(*this, by.limit);
-  out.moving = facts().moving;
+  out.moving = moving();
   out.standing = by.reached ? holds(*this, by.reached) : !out.moving;
   out.homed_at = !by.homed_at || holds(*this, by.homed_at);
   if (const model::Binding* position = model.binding(Quantity::position_actual);
@@ -138,12 +148,12 @@ std::optional<VirtualAxis::Seen> AxisCore::seen() const {
   out.controlword = controlword();
   out.mode = mode_in_force();
   out.running = motion.running();
-  const auto velocity = value(Quantity::velocity_actual);
   const auto target = value(Quantity::target_velocity);
   out.speed_asked = target.value_or(0) != 0;
   out.invalidations = store.invalidations();
   constexpr std::int64_t kTolerance = 50;  // a fiftieth of the target: "reached" is a window in CiA 402 as well (606Dh)
-  if (velocity && target && out.running == MotionKind::velocity)
+  const bool runs = target && out.running == MotionKind::velocity;
+  if (const auto velocity = runs ? value(Quantity::velocity_actual) : std::nullopt)
     out.at_velocity = std::llabs(*velocity - *target) <= std::llabs(*target) / kTolerance + model.standstill_velocity;
   return out;
 }
@@ -213,20 +223,20 @@ model::ObjectId AxisCore::to_read(model::ObjectId id) const {
 }
 
 bool AxisCore::cannot_deenergise() const {
-  if (!is_virtual()) return false;
+  if (!is_virtual() || !model.virtual_axis->gate_only) return false;
   const auto newest = seen();
   return newest && machine.cannot_deenergise(*newest, *model.virtual_axis);
 }
 
 bool AxisCore::shows_torque() const {
-  const AxisFacts now = facts();
+  const ShownState now = state();
   return now.enabled() || (now.reachable && now.state == model::State402::quick_stop_active) || cannot_deenergise();
 }
 
 bool AxisCore::held_back(Quantity quantity) const {
   const model::Binding* binding = model.binding(quantity);
   if (binding == nullptr || binding->object == model::kNoObject) return false;
-  const bool followed = facts().enabled() && (this->controlword() & model.cia402.follow_bits) != 0;
+  const bool followed = state().enabled() && (this->controlword() & model.cia402.follow_bits) != 0;
   return object(binding->object).trigger || followed;
 }
 
@@ -273,7 +283,7 @@ void AxisCore::watch_fault() {
   const ObjectState& status = store[model.statusword];
   FaultWatch::Seen seen{.at = turn.now,
                         .known = status.known,
-                        .faulted = status.known && facts().faulted(),
+                        .faulted = status.known && state().faulted(),
                         .statusword_exchange = status.exchange,
                         .words = {}};
   for (const model::ObjectId id : causes) {
@@ -285,11 +295,14 @@ void AxisCore::watch_fault() {
 }
 
 const model::AlarmRow* active_alarm(const AxisCore& core) {
+  std::array<std::optional<std::uint64_t>, std::tuple_size_v<decltype(core.model.fault_words)>> words;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const model::ObjectId id = core.model.fault_words[i];
+    if (id != model::kNoObject && core.names_cause(id)) words[i] = static_cast<std::uint64_t>(core.store[id].number);
+  }
   for (const model::AlarmRow& row : core.drive.alarms) {
-    const model::ObjectId id = core.model.fault_words[row.word];
-    if (id == model::kNoObject || !core.names_cause(id)) continue;
-    const auto word = static_cast<std::uint64_t>(core.store[id].number);
-    if (row.value ? word == *row.value : ((word >> row.bit) & 1U) != 0) return &row;
+    const auto& word = words[row.word];
+    if (word && (row.value ? *word == *row.value : ((*word >> row.bit) & 1U) != 0)) return &row;
   }
   return nullptr;
 }

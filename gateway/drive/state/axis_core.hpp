@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything that is known of one axis, for those who decide: its model, its drive's objects, its motion rules.
-// Promises that facts() and value() read the newest good samples and nothing else.
+// Promises that facts(), state(), moving() and value() read the newest good samples and nothing else.
 // Never sends and never waits.
 #pragma once
 
@@ -74,13 +74,16 @@ struct AxisCore {
   [[nodiscard]] bool another_runs() const {
     return std::ranges::any_of(model.shares, [this](AxisSlot slot) {
       const AxisCore& other = *turn.axes.at(slot);
-      return other.motion.running() != MotionKind::none || other.motion.runs_raw() || other.facts().moving;
+      return other.motion.running() != MotionKind::none || other.motion.runs_raw() || other.moving();
     });
   }
   /// link_state online or suspect.
   [[nodiscard]] bool reachable() const { return turn.link == LinkState::online || turn.link == LinkState::suspect; }
+  /// All of it, worked out again: of one thing alone ask state() or moving().
   [[nodiscard]] AxisFacts facts() const;
-  /// What facts() tells of the state was read after the last sending.
+  [[nodiscard]] ShownState state() const;
+  [[nodiscard]] bool moving() const;
+  /// What state() tells was read after the last sending.
   [[nodiscard]] bool state_is_of_now() const { return store.shows_now(model.statusword); }
   [[nodiscard]] bool is_virtual() const { return model.virtual_axis.has_value(); }
   /// Virtual axes: makes the statusword from the newest samples.

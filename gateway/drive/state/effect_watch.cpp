@@ -68,8 +68,8 @@ bool EffectWatch::stops(const AxisCore& core, std::uint64_t after) {
   const model::ObjectId moves = core.motion_object();
   if (!fresh(core, moves, after)) return false;
   if (moves == sampled)
-    return (!core.facts().moving || fall_.turned_round()) && core.turn.now - sent_at_ >= core.model.velocity_lag;
-  return !core.facts().moving && (sampled == model::kNoObject || (tells && std::abs(*velocity) <= standstill));
+    return (!core.moving() || fall_.turned_round()) && core.turn.now - sent_at_ >= core.model.velocity_lag;
+  return !core.moving() && (sampled == model::kNoObject || (tells && std::abs(*velocity) <= standstill));
 }
 
 // It moves, its bits have changed, or it is elsewhere. What moved before nobody can tell from what homes; and a drive
@@ -90,7 +90,7 @@ bool stop_shows(const AxisCore& core) {
   const model::ObjectId id = core.motion_object();
   const bool keeps_torque = core.is_virtual() && core.model.virtual_axis->gate_only;
   if (id == model::kNoObject || (!core.shows_torque() && !keeps_torque)) return false;
-  return core.motion.stopping() || core.facts().moving || !core.store[id].cached;
+  return core.motion.stopping() || core.moving() || !core.store[id].cached;
 }
 
 }  // namespace axisgate::drive

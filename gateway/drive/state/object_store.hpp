@@ -2,7 +2,7 @@
 // What is known of each object of one drive: the number last read or acknowledged, and when its request was sent.
 // Promises that a number counts as cached only while nothing has happened that could have changed it unseen
 // (design 3.3), that objects at one place of the drive hold one number, that a part holds what its whole does, and a
-// directed object what its magnitude and its direction do.
+// directed object what its magnitude and its direction do; that changed() grows with whatever becomes of an object.
 // Never holds a value of a suspect drive: the drive does not put one in.
 #pragma once
 
@@ -34,7 +34,12 @@ struct ObjectState {
 class ObjectStore {
  public:
   explicit ObjectStore(std::size_t objects)
-      : states_(objects), periods_(objects), aliases_(objects), parts_(objects), wholes_(objects, model::kNoObject) {}
+      : states_(objects),
+        changed_(objects, changes_),
+        periods_(objects),
+        aliases_(objects),
+        parts_(objects),
+        wholes_(objects, model::kNoObject) {}
   /// Objects that are aliases of one another share what becomes of any of them, and parts what becomes of their whole.
   explicit ObjectStore(const std::vector<model::ObjectDef>& objects) : ObjectStore(objects.size()) {
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -49,8 +54,14 @@ class ObjectStore {
 
   [[nodiscard]] const ObjectState& operator[](model::ObjectId id) const {
     assert(id < states_.size());
-    if (const model::PartOf* made_of = directed(id)) direct(id, *made_of);
+    if (!directed_.empty()) direct(id);
     return states_[id];
+  }
+  /// Another number than before: something has become of the object since, a number or the time of one, or what
+  /// period() says. Never 0.
+  [[nodiscard]] std::uint64_t changed(model::ObjectId id) const {
+    const model::PartOf* made_of = directed(id);
+    return made_of == nullptr ? changed_[id] : std::max(changed_[made_of->whole], changed_[made_of->sign]);
   }
   /// The drive does not have it: it is neither silent about it, nor does it have it in another width.
   [[nodiscard]] bool is_absent(model::ObjectId id) const {
@@ -131,14 +142,14 @@ class ObjectStore {
   /// Nothing is taken as cached any more, but what `except` holds: timeout, mailbox write, mode change, fault reset,
   /// set_position (design 3.3).
   void invalidate_all(model::ObjectId except = model::kNoObject) {
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      if (!same_place(i, except) && !states_[i].emulated) states_[i].cached = states_[i].unverified = false;
+    for (model::ObjectId id = 0; id < states_.size(); ++id)
+      if (!same_place(id, except) && !states_[id].emulated) at(id).cached = at(id).unverified = false;
     ++invalidations_;
   }
   /// The same, after a timeout or another master's write.
   void lose_contact() {
     invalidate_all();
-    for (ObjectState& s : states_) s.out_of_sight = !s.emulated;
+    for (model::ObjectId id = 0; id < states_.size(); ++id) at(id).out_of_sight = !states_[id].emulated;
   }
   /// How often invalidate_all() was called: whoever keeps the image true reads everything again then.
   [[nodiscard]] std::uint64_t invalidations() const { return invalidations_; }
@@ -150,8 +161,12 @@ class ObjectStore {
   void forget(model::ObjectId id) { replace(id, {}); }
   /// How often the object is confirmed, where that is not its poll class's period; 0: it is.
   void set_period(model::ObjectId id, Duration period) {
-    periods_[id] = period;
-    for (const Part& part : parts_[id]) periods_[part.id] = period;
+    const auto set = [&](model::ObjectId each) {
+      at(each);
+      periods_[each] = period;
+    };
+    set(id);
+    for (const Part& part : parts_[id]) set(part.id);
   }
   [[nodiscard]] Duration period(model::ObjectId id) const {
     const model::PartOf* made_of = directed(id);
@@ -159,13 +174,15 @@ class ObjectStore {
   }
   /// Bring-up begins: nothing is known but what is the gateway's own.
   void forget_all() {
-    for (ObjectState& s : states_)
-      if (!s.emulated) s = {};
+    for (model::ObjectId id = 0; id < states_.size(); ++id)
+      if (!states_[id].emulated) at(id) = {};
   }
 
  private:
+  /// Whatever becomes of an object becomes of it here.
   ObjectState& at(model::ObjectId id) {
     assert(id < states_.size());
+    changed_[id] = ++changes_;
     return states_[id];
   }
   struct Part {
@@ -184,8 +201,11 @@ class ObjectStore {
     const auto found = std::ranges::find(directed_, id, &Directed::id);
     return found == directed_.end() ? nullptr : &found->made_of;
   }
-  /// Out of what its two objects hold now. 0 has no direction; what says neither leaves it as it was.
-  void direct(model::ObjectId id, const model::PartOf& made_of) const {
+  /// Makes a directed object of what its two objects hold now. 0 has no direction; what says neither leaves it as is.
+  void direct(model::ObjectId id) const {
+    const model::PartOf* const found = directed(id);
+    if (found == nullptr) return;
+    const model::PartOf& made_of = *found;
     const ObjectState& way = states_[made_of.sign];
     const bool was_negative = states_[id].number < 0;
     ObjectState out = states_[made_of.whole];
@@ -228,6 +248,8 @@ class ObjectStore {
     return id == other || std::ranges::find(aliases, id) != aliases.end();
   }
   mutable std::vector<ObjectState> states_;  ///< that of a directed object is made whenever somebody looks
+  std::uint64_t changes_ = 1;
+  std::vector<std::uint64_t> changed_;  ///< of each object, what changes_ was then
   std::vector<Duration> periods_;
   std::vector<std::vector<model::ObjectId>> aliases_;
   std::vector<std::vector<Part>> parts_;  ///< of each whole
