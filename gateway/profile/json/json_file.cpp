@@ -8,9 +8,11 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/json/syntax_mistake.hpp"
 
 namespace axisgate::profile {
 namespace {
@@ -20,7 +22,13 @@ using nlohmann::json;
 /// Watches the parser: what JSON allows and a hand-written file never means, a key twice, ends the reading.
 class Watch {
  public:
+  explicit Watch(std::string_view text) : text_(text) {}
+
   bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    reached_.accepted = end_of_token(text_, reached_.read, parsed.is_number());
+    if (event == json::parse_event_t::object_start || event == json::parse_event_t::array_start)
+      reached_.open.push_back(reached_.read - 1);
+    if (event == json::parse_event_t::object_end || event == json::parse_event_t::array_end) reached_.open.pop_back();
     if (static_cast<std::size_t>(depth) > kMaxJsonDepth) return refuse("nested more than 32 levels deep");
     if (event == json::parse_event_t::object_start) {
       levels_.emplace_back();
@@ -38,11 +46,13 @@ class Watch {
     }
     return true;
   }
-  [[nodiscard]] const std::string& refused() const { return refused_; }
+  [[nodiscard]] const std::optional<SchemaFault>& refused() const { return refused_; }
+  [[nodiscard]] Reached& reached() { return reached_; }
 
  private:
   bool refuse(std::string why) {
-    if (refused_.empty()) refused_ = std::move(why);
+    if (!refused_)
+      refused_ = SchemaFault{"", std::move(why), place_at(text_, beginning_of_token(text_, reached_.read))};
     return true;  // the rest is still read, so that brackets stay in step; the fault stands
   }
   /// The keys that lead here; an array's index is not known to the parser.
@@ -55,21 +65,11 @@ class Watch {
     std::set<std::string> keys;
     std::string current;
   };
+  std::string_view text_;
   std::vector<Level> levels_;
-  std::string refused_;
+  Reached reached_;
+  std::optional<SchemaFault> refused_;
 };
-
-std::string at_line(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, byte == 0 ? 0 : byte - 1);
-  const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;
-  return "line " + std::to_string(std::ranges::count(before, '\n') + 1) + ", column " + std::to_string(column) + ": ";
-}
-
-/// nlohmann's "[json.exception...] parse error at line 1, column 2: syntax error while parsing value - what" -> "what".
-std::string plain(std::string_view what) {
-  const std::size_t dash = what.find(" - ");
-  return std::string(dash == std::string_view::npos ? what : what.substr(dash + 3));
-}
 
 /// JSON has one kind of number: 38400.0 is an integer (draft-7, 6.1.1), for who reads it here too.
 void make_whole(json& value) {
@@ -98,22 +98,25 @@ bool is_utf16(std::string_view text) {
 std::variant<json, SchemaFault> parse_json(std::string_view text) {
   if (is_utf16(text))
     return SchemaFault{
-        "", "is UTF-16: save it as UTF-8 (an editor asks for the encoding where it saves; or iconv -t UTF-8)"};
-  Watch watch;
+        "", "is UTF-16: save it as UTF-8 (an editor asks for the encoding where it saves; or iconv -t UTF-8)", {1, 1}};
+  Watch watch(text);
+  Reached& reached = watch.reached();
   try {
     json document = json::parse(
-        text.begin(), text.end(),
+        ReadSoFar(text.data(), &reached.read), ReadSoFar(text.data() + text.size(), nullptr),
         [&](int depth, json::parse_event_t event, json& parsed) {
           if (event == json::parse_event_t::value) make_whole(parsed);
           return watch(depth, event, parsed);
         },
         true, true);
-    if (!watch.refused().empty()) return SchemaFault{"", watch.refused()};
+    if (watch.refused()) return *watch.refused();
     return document;
   } catch (const json::parse_error& error) {
-    return SchemaFault{"", at_line(text, error.byte) + plain(error.what())};
-  } catch (const json::exception& error) {
-    return SchemaFault{"", plain(error.what())};
+    reached.read = std::min(error.byte, text.size());
+    const SyntaxMistake mistake = syntax_mistake(text, reached, error.what());
+    return SchemaFault{"", mistake.words, place_at(text, mistake.at)};
+  } catch (const json::exception& error) {  // a number beyond every range
+    return SchemaFault{"", parsers_words(error.what()), place_at(text, beginning_of_token(text, reached.read))};
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -61,6 +62,52 @@ bool is_echo(std::string_view description) {
          description.find("child schema") != std::string_view::npos;
 }
 
+/// What numbers count: the schema's own key "unit", or by how the name of theirs ends.
+std::string unit_of(const std::string& key, const json* said) {
+  if (const json* unit = said == nullptr || !said->is_object() ? nullptr : find(*said, "unit")) return text_of(*unit);
+  for (const auto& [ending, unit] : {std::pair{"_ms", "ms"}, {"_us", "µs"}, {"_s", "s"}, {"_mb", "MiB"}})
+    if (key.ends_with(ending)) return unit;
+  return "";
+}
+
+bool wants(const json& said, const char* type) {
+  const json* const types = find(said, "type");
+  return types != nullptr && (types->is_array() ? std::ranges::find(*types, type) != types->end() : *types == type);
+}
+
+/// 0.5 where a whole number stands.
+bool has_a_rest(const json& value, const json& said) {
+  return value.is_number_float() && wants(said, "integer") && !wants(said, "number");
+}
+
+/// "2 s", "27.5A": what stands behind the number is for people.
+bool is_number_with_a_unit(const std::string& text) {
+  const std::size_t digits = text.find_first_not_of("-.0123456789");
+  if (digits == 0 || digits == std::string::npos || !json::accept(text.substr(0, digits))) return false;
+  const std::size_t unit = text.find_first_not_of(' ', digits);
+  return unit != std::string::npos && (std::isalpha(static_cast<unsigned char>(text[unit])) != 0 || text[unit] == '%');
+}
+
+/// The key of which this is a part, or which is a part of this, where half of the longer is both.
+std::string same_beginning(const std::string& key, const std::vector<std::string>& known) {
+  for (const std::string& each : known) {
+    const auto [shorter, longer] =
+        std::minmax(key, each, [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (longer.starts_with(shorter) && 2 * shorter.size() >= longer.size()) return each;
+  }
+  return "";
+}
+
+/// Behind a key that is not known.
+std::string instead_of_key(const std::string& key, const std::vector<std::string>& known) {
+  constexpr std::size_t kMostListed = 16;
+  if (const std::string near = did_you_mean(key, known); !near.empty() || known.empty()) return near;
+  if (const std::string near = same_beginning(key, known); !near.empty()) return "; did you mean \"" + near + "\"?";
+  std::string out = ": the keys here are ";
+  for (std::size_t i = 0; i < std::min(kMostListed, known.size()); ++i) out += (i == 0 ? "" : ", ") + known[i];
+  return known.size() <= kMostListed ? out : out + " and " + std::to_string(known.size() - kMostListed) + " more";
+}
+
 class Wording {
  public:
   Wording(const json& document, const json& schema) : document_(document), schema_(schema) {}
@@ -74,6 +121,7 @@ class Wording {
       place /= keys.back();
     }
     const json* rule = schema_at(schema_, keys);
+    unit_ = unit_of(keys.empty() ? "" : keys.back(), rule);
     put(place.to_string(), document_.at(place), rule == nullptr ? json::object() : *rule, description);
   }
 
@@ -89,8 +137,11 @@ class Wording {
       return put(pointer, "key \"" + quoted(description) + "\" is missing beside this");
     if (description.find("enum") != std::string::npos && said.contains("enum"))
       return put(pointer, value.dump() + " is none of: " + choice(value, said["enum"]));
+    if (description.find("'type'") != std::string::npos && has_a_rest(value, said) && !said.contains("instead"))
+      return put(pointer, "must be a whole number" + range_text(said) + in_unit() + ", is " + value.dump());
     if (description.find("'type'") != std::string::npos && said.contains("type"))
-      return put(pointer, "must be " + types_text(said["type"]) + ", is " + std::string(value.type_name()));
+      return put(pointer, "must be " + types_text(said["type"]) + ", is " + std::string(value.type_name()) +
+                              what_to_write(value, said));
     if (description.find("'pattern'") != std::string::npos && expects != nullptr)
       return put(pointer, value.dump() + " is not " + text_of(*expects));
     if (expects != nullptr) return put(pointer, description + " (expected: " + text_of(*expects) + ")");
@@ -102,8 +153,18 @@ class Wording {
     if (std::ranges::find(faults, fault) == faults.end()) faults.push_back(fault);
   }
 
+  [[nodiscard]] std::string in_unit() const { return unit_.empty() ? "" : ", in " + unit_; }
+
+  static std::string range_text(const json& said) {
+    const json *least = find(said, "minimum"), *most = find(said, "maximum");
+    if (least != nullptr && most != nullptr) return " of " + least->dump() + " to " + most->dump();
+    if (least != nullptr) return " of at least " + least->dump();
+    return most == nullptr ? "" : " of at most " + most->dump();
+  }
+
   /// Sizes and limits, in fewer words than the validator's.
   bool bound(const std::string& pointer, const json& value, const json& said) {
+    if (has_a_rest(value, said)) return true;  // told with its type
     struct Keys {
       const char *least, *most, *noun;
     };
@@ -138,7 +199,7 @@ class Wording {
       else if (said.contains("expects"))
         put(at, name + " is not " + text_of(said["expects"]));
       else
-        put(at, "unknown key " + name + did_you_mean(key, known));
+        put(at, "unknown key " + name + instead_of_key(key, known));
     }
   }
 
@@ -150,6 +211,25 @@ class Wording {
       if (each.is_string()) words.push_back(each);
     }
     return out + did_you_mean(value.is_string() ? text_of(value) : "", words);
+  }
+
+  /// The likely thing, where one can tell it from what stands there.
+  [[nodiscard]] std::string what_to_write(const json& value, const json& said) const {
+    if (const json* instead = find(said, "instead"))
+      if (const json* words = find(*instead, value.type_name()))
+        return ": write " + boost::replace_all_copy(text_of(*words), "$", value.dump());
+    const std::string text = text_of(value);
+    const bool is_number = !text.empty() && text.find_first_not_of("-.0123456789") == std::string::npos;
+    const bool wants_number = wants(said, "integer") || wants(said, "number");
+    if (value.is_string() && wants_number && is_number && json::accept(text))
+      return ": write " + text + ", without quotes";
+    if (value.is_string() && wants_number && is_number_with_a_unit(text))
+      return ": a number stands alone" + in_unit() + ", without quotes";
+    if (value.is_number() && wants(said, "string")) return ": write \"" + value.dump() + "\", in quotes";
+    if (wants(said, "boolean")) return ": write true or false, without quotes";
+    if (wants(said, "array") && !value.is_null())
+      return ": write [" + std::string(value.is_object() ? "{...}" : value.dump()) + "], a list even of one";
+    return "";
   }
 
   static std::string quoted(const std::string& description) {
@@ -167,6 +247,7 @@ class Wording {
 
   const json& document_;
   const json& schema_;
+  std::string unit_{};  ///< of the value that is spoken of
 };
 
 }  // namespace

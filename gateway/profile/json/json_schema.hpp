@@ -15,11 +15,14 @@
 #include <variant>
 #include <vector>
 
+#include "gateway/profile/json/json_places.hpp"
+
 namespace axisgate::profile {
 
 struct SchemaFault {
   std::string pointer;  ///< RFC 6901; empty: the whole document
   std::string message;
+  JsonPlace place{};  ///< of what parse_json() refuses; others' places_of() tells
   friend bool operator==(const SchemaFault&, const SchemaFault&) = default;
 };
 
@@ -44,9 +47,8 @@ inline constexpr std::size_t kMaxWatchedBytes = 4U << 20U;
 /// Whether what is read once may come from a pipe, as a shell's <(...) is. What runs is read again at a reload.
 enum class Pipes : std::uint8_t { refused, allowed };
 
-/// The document, or why there is none. A syntax error's message begins with "line 3, column 14: "; its pointer is
-/// empty. Comments are allowed; a key given twice is a fault; a number without a fraction is an integer, however it is
-/// written. Adds to `read` what was read.
+/// The document, or why there is none, with its place, and without a pointer. Comments are allowed; a key given twice
+/// is a fault; a number without a fraction is an integer, however it is written. Adds to `read` what was read.
 [[nodiscard]] std::variant<nlohmann::json, SchemaFault> load_json(const std::filesystem::path& path,
                                                                   std::vector<FileRead>& read,
                                                                   Pipes pipes = Pipes::refused);
@@ -57,9 +59,10 @@ enum class Pipes : std::uint8_t { refused, allowed };
 [[nodiscard]] bool is_utf16(std::string_view text);
 
 /// A JSON Schema (draft-7), made ready once; it is part of the program: a bad one throws. Beside draft-7 it may say, at
-/// a "pattern", "expects": in words what the text must be (at "patternProperties": what a key must be); and beside
-/// "properties", "renamed": the names that keys had before, each with that of today. An old name is a fault that tells
-/// the new one. Not for several threads at once.
+/// a "pattern", "expects": in words what the text must be (at "patternProperties": what a key must be); beside
+/// "properties", "renamed": the names that keys had before, each with that of today (an old name is a fault that tells
+/// the new one); and beside "type", "instead": for values of another type, by its name, what to write, $ being what
+/// stands there. Not for several threads at once.
 class JsonSchema {
  public:
   explicit JsonSchema(std::string_view text);

@@ -106,6 +106,42 @@ std::vector<Ask> Profile::open_asks(const std::map<std::string, Rational>& confi
   return out;
 }
 
+namespace {
+
+/// On any motor.
+bool counts_by(const Profile& profile, std::string_view protocol, const QuantitySpec& spec,
+               const std::string& constant) {
+  const auto is_it = [&](const model::Factor& factor) {
+    const auto* name = std::get_if<std::string>(&factor);
+    return name != nullptr && *name == constant;
+  };
+  for (const std::string& name : spec.objects)
+    for (std::size_t motor = 0; motor < profile.axes.size(); ++motor) {
+      const Object* object = profile.find(name, static_cast<AxisSlot>(motor));
+      const bool has = object != nullptr && object->place(protocol) != nullptr;
+      const auto unit = has ? profile.units.find(spec.unit_of(*object)) : profile.units.end();
+      if (unit == profile.units.end()) continue;
+      if (std::ranges::any_of(unit->second.mul, is_it) || std::ranges::any_of(unit->second.div, is_it)) return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+std::vector<WantedConstant> Profile::wanted(std::string_view protocol,
+                                            const std::map<std::string, Rational>& configured) const {
+  std::vector<WantedConstant> out;
+  for (const auto& [key, constant] : constants) {
+    if (constant.standard || constant.from_drive || configured.contains(key)) continue;
+    WantedConstant one{key, constant.text, {}};
+    for (const QuantitySpec& spec : quantities)
+      if (counts_by(*this, protocol, spec, key)) one.quantities.push_back(spec.quantity);
+    std::ranges::sort(one.quantities);
+    if (constant.required || !one.quantities.empty()) out.push_back(std::move(one));
+  }
+  return out;
+}
+
 std::vector<AxisSlot> Profile::shared() const {
   const std::vector<std::string> names = JsonNode(*document, "").names("shared");
   std::vector<AxisSlot> out;

@@ -152,6 +152,14 @@ struct Ask {
   [[nodiscard]] std::string question() const { return where.empty() ? text : text + " (" + where + ")"; }
 };
 
+/// A constant whose number nobody knows yet, and what counts by it.
+struct WantedConstant {
+  std::string name;
+  std::string text;  ///< what it is, as the profile says
+  std::vector<Quantity> quantities;
+  friend bool operator==(const WantedConstant&, const WantedConstant&) = default;
+};
+
 struct Profile {
   std::string name, title;
   std::optional<IdentitySpec> identity;  ///< none: it names nobody
@@ -178,6 +186,10 @@ struct Profile {
   [[nodiscard]] const QuantitySpec* find(Quantity quantity) const;
   /// Those of `asks` that nobody has answered, with these constants of a configuration.
   [[nodiscard]] std::vector<Ask> open_asks(const std::map<std::string, Rational>& configured) const;
+  /// Constants that are required, or that quantities count by which this protocol has, and that neither this profile
+  /// nor the drive nor these constants of a configuration give.
+  [[nodiscard]] std::vector<WantedConstant> wanted(std::string_view protocol,
+                                                   const std::map<std::string, Rational>& configured) const;
   /// Motors that are enabled, stopped and reset as one, in the order of `axes`.
   [[nodiscard]] std::vector<AxisSlot> shared() const;
   /// The names under "alarms": objects, or kEmergencyWord.

@@ -59,7 +59,7 @@ class Composer {
     out_.files.push_back(file);
     std::variant<json, SchemaFault> loaded = load_json(file, out_.read);
     if (auto* wrong = std::get_if<SchemaFault>(&loaded)) {
-      out_.faults.push_back({file, wrong->pointer, wrong->message});
+      out_.faults.push_back({file, wrong->pointer, wrong->message, wrong->place});
       return;
     }
     const json& own = std::get<json>(loaded);

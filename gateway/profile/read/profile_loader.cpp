@@ -56,10 +56,6 @@ void read_asks(Reading& reading) {
 
 }  // namespace
 
-std::string text(const Fault& fault) {
-  return fault.file + ": " + (fault.pointer.empty() ? std::string() : fault.pointer + ": ") + fault.message;
-}
-
 Written written_at(const WrittenPlaces& places, const std::string& pointer) {
   for (std::size_t end = pointer.size();; end = pointer.rfind('/', end - 1)) {
     const auto known = places.find(std::string_view(pointer).substr(0, end));
@@ -68,7 +64,9 @@ Written written_at(const WrittenPlaces& places, const std::string& pointer) {
   }
 }
 
-LoadedProfile load_profile(const std::string& path, const std::vector<std::string>& folders) {
+namespace {
+
+LoadedProfile judged(const std::string& path, const std::vector<std::string>& folders) {
   LoadedProfile out{layered_profile(path, folders), path, {}, {}, {}};
   if (!out.faults.empty()) return out;
   const json& document = *out.document;
@@ -111,6 +109,14 @@ LoadedProfile load_profile(const std::string& path, const std::vector<std::strin
     // What is written once for all axes is wrong once.
     if (std::ranges::find(out.faults, told) == out.faults.end()) out.faults.push_back(std::move(told));
   }
+  return out;
+}
+
+}  // namespace
+
+LoadedProfile load_profile(const std::string& path, const std::vector<std::string>& folders) {
+  LoadedProfile out = judged(path, folders);
+  locate(out.faults, out.read);
   return out;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads drive profiles.
-// Promises every mistake of a profile at once, each with file, JSON pointer and what to change.
+// Promises every mistake of a profile at once, each with file, line, JSON pointer and what to change.
 // Never resolves: what a profile says of one configured drive is gateway/profile/resolve's.
 #pragma once
 
@@ -8,19 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "gateway/profile/json/json_schema.hpp"
+#include "gateway/profile/json/json_fault.hpp"
 #include "gateway/profile/read/profile.hpp"
 
 namespace axisgate::profile {
-
-struct Fault {
-  std::string file;
-  std::string pointer;  ///< RFC 6901; empty: the whole file
-  std::string message;
-  friend bool operator==(const Fault&, const Fault&) = default;
-};
-/// "kinco-jd.json: /objects/mode/type: must be ..."
-[[nodiscard]] std::string text(const Fault& fault);
 
 /// Where something was written: a profile may say it in a file that it extends, or once for all its axes.
 struct Written {
