@@ -165,6 +165,15 @@ std::string float_text(const config::AxisConfig& config) {
   return fmt::format("on listeners with \"numbers\": \"float\" each unit has its own number up to ±{:g} turns", turns);
 }
 
+/// What would be there with a constant that nobody has given.
+void add_wanted(std::string& out, const std::vector<profile::WantedConstant>& wanted) {
+  for (const profile::WantedConstant& constant : wanted) {
+    std::vector<std::string_view> names;
+    for (const Quantity quantity : constant.quantities) names.push_back(row(quantity).name);
+    add_line(out, "not given", fmt::format("{}, for {}", constant.name, fmt::join(names, ", ")));
+  }
+}
+
 void add_axis(std::string& out, const MasteredAxis& whole, bool floats) {
   const auto& [config, axis, drive, budget, dds] = whole;
   out += fmt::format("\nAxis {} \"{}\": {}, registers {} to {}\n", config.number, config.name, drive.title,
@@ -211,6 +220,7 @@ CheckReport report(const config::LoadedConfig& loaded) {
       const model::DriveModel& model = loaded.models[b][d];
       for (std::size_t a = 0; a < model.axes.size(); ++a)
         add_axis(out, {bus.drives[d].axes[a], model.axes[a], model, budgets[b], config.dds}, floats);
+      add_wanted(out, bus.drives[d].wanted);
     }
   }
   if (config.dds) {

@@ -46,7 +46,8 @@ namespace axisgate::check {
 
 /// What its `limits` are in rpm and turns, and which are missing.
 [[nodiscard]] ReportLines limit_lines(const config::AxisConfig& config, const model::AxisModel& axis);
-/// What bounds nothing on the drive or does not reach what it should. Each with file, key and what to change.
+/// What bounds nothing on the drive, does not reach what it should or looks like another unit, and constants without
+/// which nobody sees how hard a motor works. Each with file, line, key and what to change.
 [[nodiscard]] std::vector<std::string> limit_warnings(const config::LoadedConfig& loaded);
 
 /// What of it is watched, and what is done then; where the drive shows nothing that could be watched, that.

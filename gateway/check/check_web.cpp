@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "gateway/upstream/web_link/capture_defaults.hpp"
+
 namespace axisgate::check {
 namespace {
 
@@ -23,11 +25,10 @@ std::string history_text(const web::WebSettings& settings, std::size_t values) {
 /// "10 s before and 5 s behind each cause, the newest 20, in memory alone"
 std::string captures_text(const nlohmann::json& recorder) {
   const nlohmann::json given = recorder.value("captures", nlohmann::json::object());
-  constexpr double kBefore = 10, kAfter = 5;
-  constexpr int kKeep = 20;
   const bool has_folder = given.contains("folder") && given["folder"].is_string();
-  return fmt::format("{} s before and {} s behind each cause, the newest {}, {}", given.value("before_s", kBefore),
-                     given.value("after_s", kAfter), given.value("keep", kKeep),
+  return fmt::format("{} s before and {} s behind each cause, the newest {}, {}",
+                     given.value("before_s", double{web::kCaptureBeforeS}),
+                     given.value("after_s", double{web::kCaptureAfterS}), given.value("keep", web::kCapturesKept),
                      has_folder ? "as files in " + given["folder"].get<std::string>() : "in memory alone");
 }
 

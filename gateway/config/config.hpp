@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gateway/core/clock.hpp"
@@ -24,6 +25,10 @@ namespace axisgate::config {
 /// A drive whose profile has an open question (key "ask") before which it must not move: a mistake, or, for who finds
 /// the answer out beside the machine, a warning.
 enum class OpenAsks : std::uint8_t { refused, allowed };
+
+/// What stands in a configuration to paste (`axisgate scan`) for a number that only a person can look up. Never a
+/// value.
+inline constexpr std::string_view kFillIn = "FILL IN";
 
 /// What its model is made of, and what the gateway itself needs to know. The name is "axis 3" where none was given.
 struct AxisConfig : profile::ResolveAxis {
@@ -42,7 +47,8 @@ struct DriveConfig {
   std::array<std::optional<std::uint32_t>, 4> identity{};  ///< canopen: vendor, product, revision, serial (1018h)
   std::vector<AxisConfig> axes;
   std::string pointer;
-  std::vector<std::string> open_before{};  ///< not in the file: what open questions of its profile forbid
+  std::vector<profile::WantedConstant> wanted{};  ///< not in the file: what its profile would like to know
+  std::vector<std::string> open_before{};         ///< not in the file: what open questions of its profile forbid
   std::string profile_text{};  ///< what the profile's file says, without spaces: its models are made from it
   friend bool operator==(const DriveConfig&, const DriveConfig&) = default;
 };

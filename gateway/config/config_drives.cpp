@@ -12,6 +12,12 @@ void read_constants(const JsonNode& node, DriveConfig& drive, ConfigFaults& faul
   for (const JsonNode& constant : node["constants"].items()) {
     if (const auto value = constant.rational()) {
       drive.constants.emplace(constant.key(), *value);
+    } else if (constant.text() == kFillIn) {
+      faults.add(
+          constant.pointer(),
+          fmt::format("still says \"{}\": write the number that the type plate of drive or motor, or the manual, "
+                      "says; where the profile does without it, the line may go",
+                      kFillIn));
     } else if (!faults.within(constant.pointer())) {
       faults.add(constant.pointer(), "is no exact number: write it like 27.5 or \"10000/60\", without an exponent");
     }
@@ -40,10 +46,15 @@ std::string rtu_mistake(int node) {
   return fmt::format("{} is no unit id that a drive may have: they go from 1 to 247", node);
 }
 
+/// Of a bus without one nothing is told that depends on it.
+bool adapter_known(const BusConfig& bus, const ConfigFaults& faults) {
+  return !bus.adapter.empty() && !faults.within(bus.pointer + "/adapter");
+}
+
 std::uint8_t read_node(const JsonNode& node, const BusConfig& bus, ConfigFaults& faults) {
   if (!node.has("node")) {
     if (bus.adapter == adapter::kKeyaRs232) return 1;  // its frames carry none
-    if (!faults.within(bus.pointer + "/adapter")) faults.add(node.pointer(), "key \"node\" is missing");
+    if (adapter_known(bus, faults)) faults.add(node.pointer(), "key \"node\" is missing");
     return 0;
   }
   const std::int64_t number = node.integer("node").value_or(0);
@@ -76,7 +87,7 @@ DriveConfig read_drive(const JsonNode& node, const BusConfig& bus, ConfigFaults&
   read_constants(node, drive, faults);
   drive.identity = read_identity(node);
   // Accepting it unchecked would promise a safety that is not there.
-  if (node.has("identity") && bus.adapter != adapter::kCanopen && !faults.within(bus.pointer + "/adapter")) {
+  if (node.has("identity") && bus.adapter != adapter::kCanopen && adapter_known(bus, faults)) {
     faults.add(node.pointer("identity"),
                fmt::format("{} has no object 1018h to compare with: remove the key", bus.adapter));
   }

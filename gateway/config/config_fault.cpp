@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/config/config_fault.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace axisgate::config {
-
-std::string text(const ConfigFault& fault) {
-  if (fault.pointer.empty()) return fmt::format("{}: {}", fault.file, fault.message);
-  return fmt::format("{}: {}: {}", fault.file, fault.pointer, fault.message);
-}
 
 void ConfigFaults::add(std::string_view pointer, std::string_view message) {
   add(ConfigFault{file_, std::string(pointer), std::string(message)});
@@ -22,7 +15,12 @@ void ConfigFaults::add(ConfigFault fault) {
 }
 
 void ConfigFaults::warn(std::string_view pointer, std::string_view message) {
-  warnings_.push_back(text(ConfigFault{file_, std::string(pointer), std::string(message)}));
+  warnings_.push_back(ConfigFault{file_, std::string(pointer), std::string(message)});
+}
+
+void ConfigFaults::locate(const std::vector<profile::FileRead>& read) {
+  profile::locate(faults_, read);
+  profile::locate(warnings_, read);
 }
 
 bool ConfigFaults::within(std::string_view pointer) const {

@@ -40,7 +40,7 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
   LoadedConfig loaded;
   auto read = profile::load_json(file, loaded.config.read, pipes);
   if (const auto* fault = std::get_if<profile::SchemaFault>(&read)) {
-    faults.add(fault->pointer, fault->message);
+    faults.add(ConfigFault{file, fault->pointer, fault->message, fault->place});
     return faults.faults();
   }
   const auto& document = std::get<nlohmann::json>(read);
@@ -55,7 +55,6 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
     if (loaded.config.dds) loaded.config.read_by_dds = read_files_of_dds(*loaded.config.dds);
     loaded.config.web = read_web(root, loaded.config, faults);
     check_unique(loaded.config, faults);
-    warn_without_effect(root, faults);
     warn_about_unit_ids(loaded.config, faults);
     loaded.models = load_models(loaded.config, profile_folders, open_asks, faults);
     if (faults.faults().empty()) {
@@ -64,8 +63,9 @@ LoadResult load_config(const std::string& file, const std::vector<std::string>& 
       settle_keya_buses(loaded.config, loaded.models, faults);
     }
   }
+  faults.locate(loaded.config.read);
   if (!faults.faults().empty()) return faults.faults();
-  loaded.warnings = faults.warnings();
+  for (const ConfigFault& warning : faults.warnings()) loaded.warnings.push_back(text(warning));
   return loaded;
 }
 

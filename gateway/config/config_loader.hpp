@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a configuration file and everything it needs: the profiles of its drives, resolved into models.
-// Promises either a configuration that is right in every respect, or every mistake at once, each with its file and
-// place. Never opens a port or creates anything: a wrong configuration leaves no trace.
+// Promises either a configuration that is right in every respect, or every mistake at once, each with its file,
+// line and place. Never opens a port or creates anything: a wrong configuration leaves no trace.
 #pragma once
 
 #include <string>

@@ -67,8 +67,7 @@ class Profiles {
     }
     const profile::LoadedProfile& profile = known->second;
     if (profile.faults.empty()) return &profile;
-    for (const profile::Fault& fault : profile.faults)
-      faults_.add(ConfigFault{fault.file, fault.pointer, fault.message});
+    for (const profile::Fault& fault : profile.faults) faults_.add(fault);
     faults_.add(pointer, fmt::format("profile {} is wrong, see its own mistakes: correct it", *file));
     return nullptr;
   }
@@ -145,6 +144,7 @@ std::optional<model::DriveModel> load_model(const BusConfig& bus, DriveConfig& c
   if (profile == nullptr || faults.within(config.pointer)) return std::nullopt;
   check_asks(*profile, config, open_asks, faults);
   config.profile_text = profile->text;
+  config.wanted = profile->profile.wanted(bus.adapter, config.constants);
   const std::size_t motors = profile->profile.axes.size();
   if (config.axes.size() > motors) {
     faults.add(config.pointer + "/axes",
@@ -174,7 +174,7 @@ std::vector<std::vector<model::DriveModel>> load_models(Config& config, const st
   Profiles profiles(config.file, profile_folders, faults);
   for (BusConfig& bus : config.buses) {
     auto& drives = models.emplace_back();
-    if (faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for
+    if (bus.adapter.empty() || faults.within(bus.pointer + "/adapter")) continue;  // no protocol to resolve for
     for (DriveConfig& drive : bus.drives) {
       if (faults.within(drive.pointer + "/profile") || drive.profile.empty()) continue;
       if (auto model = load_model(bus, drive, profiles, open_asks, faults)) drives.push_back(std::move(*model));

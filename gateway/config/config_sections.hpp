@@ -36,8 +36,6 @@ using profile::JsonNode;
 
 /// Names, numbers, devices and stations that may be there once only, over the whole file.
 void check_unique(const Config& config, ConfigFaults& faults);
-/// Keys that are right and have no effect as things stand: one warning for each.
-void warn_without_effect(const JsonNode& root, ConfigFaults& faults);
 
 /// The profiles of all drives, resolved for their axes; what was read for it is added to the configuration. Drives with
 /// mistakes of their own are left out.

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <sstream>
 
+#include "gateway/manual/roff.hpp"
+
 namespace axisgate::manual {
 namespace {
 
@@ -11,40 +13,6 @@ std::string capitals(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;
 }
-
-/// Text that roff prints as it stands.
-std::string plain(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '\\':
-        out += "\\e";
-        break;
-      case '-':
-        out += "\\-";
-        break;
-      case '\'':
-        out += "\\(aq";
-        break;
-      case '`':
-        out += "\\(ga";
-        break;
-      case '^':
-        out += "\\(ha";
-        break;
-      case '~':
-        out += "\\(ti";
-        break;
-      default:
-        out += c;
-    }
-  }
-  // A dot that opens a line would be a request.
-  return out.empty() || out.front() != '.' ? out : "\\&" + out;
-}
-
-std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
-std::string slanted(const std::string& text) { return "\\fI" + plain(text) + "\\fR"; }
 
 /// A footer has lines that were broken for a terminal, and others that begin something: these open with a capital.
 std::string paragraph(const std::string& text) {

@@ -173,6 +173,71 @@ TEST(Check, WarnsOfAVelocityThatWasMeantInRpm) {
   EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("its unit is")));
 }
 
+TEST(Check, WarnsOfLimitsThatLookLikeAnotherUnitAndOfNoOthers) {
+  LoadedConfig loaded = one_axis();
+  AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
+  model::AxisModel& model = loaded.models[0][0].axes[0];
+  const auto warned = [&](const std::string& words) {
+    const std::string text = check::report(loaded).text;
+    return words.empty() ? text.find("its unit is") == std::string::npos : text.find(words) != std::string::npos;
+  };
+  axis.limits.velocity = 100'000'000;
+  EXPECT_TRUE(warned(""));
+  axis.limits.velocity = 120'000'000;
+  EXPECT_TRUE(warned("/limits/velocity: 120000000 is 120000 rpm, faster than motors turn: its unit is 0.001 rpm"));
+  model.rated_speed = 3'000'000;
+  axis.limits.velocity = 31'000'000;
+  EXPECT_TRUE(warned("31000000 is 31000 rpm, 10 times the rated speed of 3000 rpm: its unit is"));
+  axis.limits.velocity = 30'000'000;
+  EXPECT_TRUE(warned(""));
+  axis.limits.position = Range{0, 499};
+  EXPECT_TRUE(warned("/limits/position: 0 to 499 is 0.05 of a turn of the motor: its unit is 1/10000 turn"));
+  axis.limits.position = Range{0, 500};
+  EXPECT_TRUE(warned(""));
+  axis.limits.torque = 9;
+  EXPECT_TRUE(warned("/limits/torque: 9 is 0.9 % of the rated torque: its unit is 0.1 %, 1000 is the rated torque"));
+  axis.limits.torque = 10;
+  EXPECT_TRUE(warned(""));
+  axis.limits.velocity = 3'000'000;
+  axis.limits.acceleration = 499;
+  EXPECT_TRUE(
+      warned("/limits/acceleration: 499 is 49.9 rpm/s: the limit of velocity is reached after 60 s; its unit is"));
+  axis.limits.acceleration = 500;
+  EXPECT_TRUE(warned(""));
+}
+
+TEST(Check, WarnsWhereNothingTellsHowHardTheMotorWorks) {
+  LoadedConfig loaded = one_axis();
+  DriveConfig& drive = loaded.config.buses[0].drives[0];
+  drive.pointer = "/buses/0/drives/0";
+  loaded.config.read = {{"gateway.json", "{\n\"buses\": []}"}};
+  constexpr const char* kWarning =
+      "warning: gateway.json:2:1: /buses/0/drives/0/constants: \"peak_current_a\" is not given";
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("not given"))) << "the profile wants none";
+  drive.wanted = {{"rated_speed_rpm", "of the plate", {Quantity::target_velocity}}};
+  EXPECT_THAT(check::report(loaded).text, AllOf(HasSubstr("not given       rated_speed_rpm, for target_velocity\n"),
+                                                Not(HasSubstr("is not given"))));
+  drive.wanted.push_back(
+      {"peak_current_a", "peak current of the drive", {Quantity::current_actual, Quantity::torque_actual}});
+  EXPECT_THAT(check::report(loaded).text,
+              HasSubstr(std::string(kWarning) + ", and so nothing tells how hard the motor works, neither current nor "
+                                                "torque: peak current of the drive\n"));
+  drive.wanted.push_back({"rated_current_a", "of the motor", {Quantity::torque_actual}});
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("\"rated_current_a\" is not given")))
+      << "the other one is enough";
+  loaded.models[0][0].axes[0].supported |= bit(Quantity::torque_actual);
+  EXPECT_THAT(check::report(loaded).text, Not(HasSubstr("is not given")));
+}
+
+TEST(Check, GivesTheLimitOfVelocityInMetresWhereThoseAreKnown) {
+  LoadedConfig loaded = one_axis();
+  AxisConfig& axis = loaded.config.buses[0].drives[0].axes[0];
+  axis.limits.velocity = 3'000'000;
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("velocity 3000 rpm\n"));
+  axis.metres_per_rev = Rational(1, 4000);
+  EXPECT_THAT(check::report(loaded).text, HasSubstr("velocity 3000 rpm (0.0125 m/s)\n"));
+}
+
 /// What a limit of the velocity does not reach: by this command, whose speed nobody can write.
 void expect_warning_of_own_speed(Command command, Quantity speed, const std::string& motion, const std::string& name) {
   LoadedConfig loaded = one_axis();

@@ -9,11 +9,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
-TEST(ConfigFaults, SayFilePointerAndMessage) {
-  EXPECT_EQ(text({"a.json", "/buses/0/baud", "is wrong: mend it"}), "a.json: /buses/0/baud: is wrong: mend it");
-  EXPECT_EQ(text({"a.json", "", "cannot be read"}), "a.json: cannot be read");
-}
-
 TEST(ConfigFaults, KnowWhatIsWrongAtOrBelowAPlace) {
   ConfigFaults faults("a.json");
   faults.add("/buses/1/drives/0", "x");
@@ -45,7 +40,11 @@ TEST(ConfigFaults, KeepWarningsApart) {
   ConfigFaults faults("a.json");
   faults.warn("/modbus_tcp/0/listen", "everybody may read");
   EXPECT_THAT(faults.faults(), SizeIs(0));
-  EXPECT_THAT(faults.warnings(), ElementsAre("a.json: /modbus_tcp/0/listen: everybody may read"));
+  EXPECT_THAT(faults.warnings(), ElementsAre(ConfigFault{"a.json", "/modbus_tcp/0/listen", "everybody may read"}));
+  faults.add("/buses", "x");
+  faults.locate({{"a.json", "{\"modbus_tcp\": [{\n\"listen\": 1}]}"}});
+  EXPECT_EQ(text(faults.warnings().at(0)), "a.json:2:1: /modbus_tcp/0/listen: everybody may read");
+  EXPECT_EQ(text(faults.faults().at(0)), "a.json: /buses: x") << "it is not there";
 }
 
 }  // namespace

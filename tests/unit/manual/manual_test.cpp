@@ -3,6 +3,7 @@
 
 #include "gateway/manual/command_tree.hpp"
 #include "gateway/manual/completion.hpp"
+#include "gateway/manual/configuration_page.hpp"
 #include "gateway/manual/generate.hpp"
 #include "gateway/manual/manual_page.hpp"
 
@@ -118,6 +119,29 @@ TEST_F(Manual, only_generate_with_a_form_is_meant) {
   EXPECT_FALSE(asked({"tool", "--generate", "fish"}));
   EXPECT_FALSE(asked({"tool", "--generate"}));
   EXPECT_FALSE(asked({"tool", "go", "--generate", "man"}));
+}
+
+TEST(ConfigurationPage, HasEachKeyWithAllThatTheSchemaSaysOfIt) {
+  const std::string page = configuration_page(R"({
+    "description": "The whole.", "required": ["buses"],
+    "properties": {"$schema": {"type": "string"}, "buses": {"description": "Lines.", "type": "array", "items": {"$ref": "#/definitions/bus"}}},
+    "definitions": {"bus": {"properties": {
+      "wait_ms": {"description": "So long. 'x'", "type": "integer", "minimum": 1, "maximum": 9, "default": 5, "examples": [3]},
+      "limits": {"description": "None.", "type": ["object", "null"], "otherwise": "no limit",
+                 "properties": {"speed": {"description": ".dot", "type": "number", "exclusiveMinimum": 0, "maximum": 2, "unit": "rpm",
+                                          "examples": [{"a": [1, "b, c"]}]}}},
+      "parity": {"description": "Default: as it is.", "enum": ["none", "odd"], "default": "none"}}}}})",
+                                              "1.2");
+  EXPECT_THAT(page, HasSubstr(".TH GATEWAY.JSON 5 \"\" \"axisgate 1.2\""));
+  EXPECT_THAT(page, HasSubstr(".SS \"The file\"\n.TP\n\\fBbuses\\fR (a list)\nLines.\nRequired.\n.SS \"buses[]\"\n"));
+  EXPECT_THAT(page,
+              HasSubstr("\\fBwait_ms\\fR (a whole number 1 to 9, ms)\nSo long. \\(aqx\\(aq\nDefault: 5.\n.br\nExample: "
+                        "\\fB\"wait_ms\": 3\\fR\n"));
+  EXPECT_THAT(page, HasSubstr("\\fBlimits\\fR (an object, or null)\nNone.\nWithout it: no limit.\n"));
+  EXPECT_THAT(page, HasSubstr(".SS \"buses[].limits\"\n.TP\n\\fBspeed\\fR (a number above 0 to 2, rpm)\n\\&.dot\n"));
+  EXPECT_THAT(page, HasSubstr("\\fB\"speed\": {\"a\": [1, \"b, c\"]}\\fR\n"));
+  EXPECT_THAT(page, HasSubstr("(\"none\", \"odd\")\nDefault: as it is.\n.")) << "said once";
+  EXPECT_THAT(page, Not(HasSubstr("schema\\fR")));
 }
 
 }  // namespace

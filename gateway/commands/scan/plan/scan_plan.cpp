@@ -194,6 +194,7 @@ bool ScanPlan::tells_widths() const {
 void ScanPlan::judge(const profile::Profile& profile, bool widths_reported) {
   ScanFit fit{profile.name};
   fit.only_simulated = profile.only_simulated;
+  fit.wanted = profile.wanted("canopen", {});
   int own = 0, lacks_own = 0;
   for (const profile::Object& object : profile.objects) {
     const profile::Place* place = place_of(object);

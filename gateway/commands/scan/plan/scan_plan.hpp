@@ -27,6 +27,7 @@ struct ScanFit {
   int of = 0;
   By by = By::objects;
   bool only_simulated = false;  ///< model::kOnlySimulated
+  std::vector<profile::WantedConstant> wanted{};
   friend bool operator==(const ScanFit&, const ScanFit&) = default;
 };
 

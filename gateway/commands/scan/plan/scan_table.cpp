@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "gateway/commands/scan/plan/drive_to_paste.hpp"
+
 namespace axisgate::commands {
 namespace {
 
@@ -66,9 +68,7 @@ std::string entry_of(const FoundNode& node) {
   constexpr std::array<std::string_view, 2> kNumbers{"vendor", "product"};
   for (std::size_t i = 0; i < kNumbers.size(); ++i)
     if (node.identity[i]) identity.push_back(fmt::format("\"{}\": {}", kNumbers[i], *node.identity[i]));
-  std::string out = fmt::format("{{\"profile\": \"{}\", \"node\": {}, ", node.fits.front().profile, node.node);
-  if (!identity.empty()) out += fmt::format("\"identity\": {{{}}}, ", fmt::join(identity, ", "));
-  return out + fmt::format("\"axes\": [{{\"axis\": {}}}]}}", node.node);
+  return drive_to_paste(node.fits.front(), node.node, fmt::format("{}", fmt::join(identity, ", ")), "  ");
 }
 
 std::string aligned(const std::vector<Row>& rows) {
@@ -94,13 +94,13 @@ std::string scan_table(const std::vector<FoundNode>& nodes) {
     rows.push_back(row_of(node));
     for (const std::string& remark : remarks_of(node))
       remarks.push_back(fmt::format("node {}: {}\n", node.node, remark));
-    if (!node.fits.empty()) entries.push_back("  " + entry_of(node));
+    if (!node.fits.empty()) entries.push_back(entry_of(node));
   }
   std::string out = aligned(rows);
   if (!remarks.empty()) out += fmt::format("\n{}", fmt::join(remarks, ""));
   if (!entries.empty())
-    out += fmt::format("\n\"drives\" of a configuration (the axis numbers are yours to choose):\n{}\n",
-                       fmt::join(entries, ",\n"));
+    out += fmt::format("\n\"drives\" of a configuration (the axis numbers are yours to choose{}):\n{}\n",
+                       to_fill_in(entries), fmt::join(entries, ",\n"));
   return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "adapters/kinco/kinco_exchange.hpp"
 #include "adapters/modbus_rtu/rtu_codec.hpp"
+#include "gateway/commands/scan/plan/drive_to_paste.hpp"
 #include "gateway/config/adapter_names.hpp"
 #include "gateway/core/rtu_crc.hpp"
 
@@ -223,6 +224,7 @@ std::vector<ScanFit> SerialScanPlan::fits() const {
   for (const profile::Profile& profile : protocol().profiles) {
     ScanFit fit{profile.name};
     fit.only_simulated = profile.only_simulated;
+    fit.wanted = profile.wanted(protocol().name, {});
     for (const profile::Object& object : profile.objects) {
       const profile::Place* place = read_place(object, protocol().name);
       if (place == nullptr) continue;
@@ -269,12 +271,11 @@ std::string serial_scan_table(const std::vector<FoundStation>& found, const std:
     std::vector<std::string> drives;
     for (const FoundStation& station : found)
       if (station.speech == speech && !station.fits.empty())
-        drives.push_back(fmt::format("    {{\"profile\": \"{}\", \"node\": {}, \"axes\": [{{\"axis\": {}}}]}}",
-                                     station.fits.front().profile, station.station, station.station));
+        drives.push_back(drive_to_paste(station.fits.front(), station.station, {}, "    "));
     out += fmt::format(
-        "\na bus of a configuration (its name and the axis numbers are yours to choose):\n"
+        "\na bus of a configuration (its name and the axis numbers are yours to choose{}):\n"
         "  {{\"name\": \"line\", \"adapter\": \"{}\", \"device\": \"{}\", \"baud\": {}, \"drives\": [\n{}]}}\n",
-        speech.protocol, device, speech.baud, fmt::join(drives, ",\n"));
+        to_fill_in(drives), speech.protocol, device, speech.baud, fmt::join(drives, ",\n"));
   }
   return out;
 }
