@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 
 #include "gateway/core/clock.hpp"
@@ -27,6 +28,12 @@ struct TimeCounts {
     const std::uint64_t units = ns / static_cast<std::uint64_t>(kFirst.count());
     ++counts[std::min<std::size_t>(kBuckets - 1, static_cast<std::size_t>(std::bit_width(units)))];
     sum_ns += ns;
+  }
+  /// What another one has counted as well.
+  TimeCounts& operator+=(const TimeCounts& other) {
+    std::ranges::transform(counts, other.counts, counts.begin(), std::plus());
+    sum_ns += other.sum_ns;
+    return *this;
   }
   [[nodiscard]] std::uint64_t total() const { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
   friend bool operator==(const TimeCounts&, const TimeCounts&) = default;

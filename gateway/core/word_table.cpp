@@ -291,6 +291,100 @@ constexpr auto kWords = std::to_array<Word>({
      "axisgate explain with the code: the text of each drive"},
     {error_code, 0xFFFF, "not known yet", "the drive has a fault, and its cause is being read: half a second at most",
      "", "look again"},
+
+    {block_error, 0x0100, "row refused",
+     "a row of the block was refused: 16#0100 and its offset: 16#012A target_position, 16#0130 profile_velocity, "
+     "16#0136 the command",
+     "a limit of the axis, or nothing that this drive has",
+     "correct that input; axisgate check has the limits of the axis and what is not on it"},
+    {block_error, 0x0200, "no connection", "no connection to the gateway, or Enable was TRUE before there was one",
+     "cable, address, a gateway or a scanner that does not run", "AXG_Reset, or a new edge, once it is back"},
+    {block_error, 0x0201, "connection lost",
+     "the connection was lost while the command was on its way: it was carried out or not",
+     "cable, or a gateway or controller that was started anew", "AXG_ReadStatus shows what the axis does; stop it"},
+    {block_error, 0x0202, "no answer", "no answer within AckTimeout of the axis, or the same refusal as the one before",
+     "images at other addresses than those of the axis, a scanner that does not write Out",
+     "the scanner's own error; the log of the gateway"},
+    {block_error, 0x0203, "input out of range",
+     "an input is negative, too large, or too small to be more than 0 in the gateway's units",
+     "a value of the program, or UnitScale", "correct it, then a new edge"},
+    {block_error, 0x0204, "stop held", "an AXG_Stop holds the axis",
+     "its Execute is TRUE, or the axis does not stand yet", "let its Execute fall, then a new edge"},
+    {block_error, 0x0205, "units not known", "the units are not known: registers 90 to 95 have not been read",
+     "the image Info is not mapped, or was not read yet", "map Info, and wait for UnitsKnown of the axis"},
+    {block_error, 0x0206, "drive fault", "the drive has a fault, or was lost while it moved",
+     "AXG_ReadError tells which", "remove the cause, then AXG_Reset"},
+    {block_error, 0x0207, "overtaken by a stop",
+     "a stop came before the command was answered: it was carried out or not",
+     "an AXG_Stop or AXG_Halt of the same program", "a new edge, once the stop is over"},
+    {block_error, 0x0208, "power gone", "the power is, or was, gone though Enable is TRUE, or a stop is latched",
+     "a fault, a stop or disable of somebody else, a lease that has run out, a drive that was started anew",
+     "AXG_ReadStatus and AXG_ReadError tell why; then AXG_Reset"},
+    {block_error, 0x0209, "drive out of sight", "the gateway does not see the drive: its motor may be turning",
+     "its cable and power", "repair it: the gateway finds it by itself"},
+    {block_error, 0x020A, "not on this drive", "this drive cannot do it", "a command that the drive does not have",
+     "axisgate check names what is not on an axis; leave that block out"},
+
+    {term, 1, "owner",
+     "the client whose commands an axis takes: whoever commands it first has it, and until the lease ends nobody else "
+     "moves it; stops are everybody's",
+     "register 28, owner: 0 nobody, 1 this client, 2 another; register 96 has that one's address; what another "
+     "commands meanwhile is refused with exception 0x06 and result 7",
+     "have the owner disable or release it (command 13), wait until its lease has run out, or take it over with a "
+     "higher rank (command 14)"},
+    {term, 2, "lease",
+     "the time that the gateway waits for a sign of life of the owner; when it has run out, the axis is stopped and "
+     "has no owner",
+     "register 29, lease_remaining_ms; once it has run out alarm stop_latched and an event",
+     "give signs of life: any request, with \"client\": \"address\" a write, with \"renew\": \"heartbeat\" a changed "
+     "register 56; \"lease\" of the axis sets the time"},
+    {term, 3, "latch",
+     "what a quick stop, or a lease that has run out, leaves behind: the axis takes no start until somebody clears it "
+     "on purpose",
+     "axis alarm 7, stop_latched; discrete input 12; \"latched\" in top; starts are refused with result 9",
+     "enable with a new id; command 0 first if the last command was 1 (coil 0: first 0); a disable clears nothing"},
+    {term, 4, "block",
+     "a request that writes more than one row, and every function 23: the image of a scanner, which is written again "
+     "and again; it is taken whole or not at all",
+     "what it only repeats does nothing; of one that was refused command_detail, register 26, reads 0x0A000000 + the "
+     "offset of the row",
+     "begin with command 0 and an id, then a new id for each command"},
+    {term, 5, "single write",
+     "a request that writes one row: function 5, 6 or 22, or 15 or 16 with one row; whoever sends it means it now",
+     "it acts at once, also as the first one of a connection; the same number again within rearm_ms, a second, counts "
+     "once",
+     "write a number when it is meant, not in each cycle: a scanner writes blocks"},
+    {term, 6, "id",
+     "command_id, register 55: what tells a new command from a copy of the one before; a command acts when its id is "
+     "another one than the last",
+     "register 30, command_id_seen, reads it back; register 33, motion_id, is that of the motion",
+     "write it in one request with its command, and count it on with each command; 65535 is followed by 1, and 0 is "
+     "none"},
+
+    {term, 7, "not new",
+     "a command that repeats what was written before, and so did nothing: a copy of an image is no wish",
+     "result 10, not_new; of a single write exception 0x06 as well", "write 0 first, or use a new id"},
+    {term, 8, "owed",
+     "a stop that was accepted and that the drive does not show yet: the gateway repeats it before all else until it "
+     "does, also after a loss of the drive",
+     "the stop was answered with exception 0x0A or 0x0B or result 11; until it is done, starts are refused with result "
+     "9",
+     "repair cable or power, it is carried out by itself; the motor stands when register 31 shows it, and not before"},
+    {term, 9, "adopted",
+     "found enabled when the gateway started or the drive came back: the motor goes on with what it did until somebody "
+     "stops or disables it, or its lease ends",
+     "axis alarm 1, adopted_running",
+     "go on with it, stop it, or disable it; where it has a lease, a client that writes to it within that time owns "
+     "it, and it goes on, else it is stopped"},
+    {term, 10, "posted",
+     "\"writes\": \"posted\" of a listener: a write is answered after its checks, not when the drive has acknowledged "
+     "it, so that one slow drive does not hold up a scanner",
+     "the answer of the request says nothing of the drive",
+     "read what became of the command: registers 25, 26 and 30, once 30 reads its id"},
+    {term, 11, "orphan", "a lease whose connection has ended: it still runs, and stops the axis at its end",
+     "register 28 and register 29 as before, to another client owner reads 2",
+     "connect again from the same address and write to the axis, which takes it over; with \"client\": \"address\" "
+     "whoever connects anew is the client that he was"},
 });
 
 }  // namespace

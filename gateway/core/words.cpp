@@ -77,10 +77,9 @@ std::string names_of_bits(WordKind kind, std::uint32_t bits) {
 }
 
 std::string list_of(WordKind kind) {
-  constexpr std::uint32_t kFirstOfDds = 16;  // results above are of DDS replies alone
   std::string out;
   for (const Word& word : words()) {
-    if (word.kind != kind || (kind == result && word.number >= kFirstOfDds)) continue;
+    if (word.kind != kind || (kind == result && word.number >= kFirstResultOfDds)) continue;
     out += fmt::format("{}{} {}", out.empty() ? "" : ", ", number_text(word), word.name);
   }
   return kind == axis_alarm || kind == gateway_alarm ? "bit " + out : out;
@@ -88,6 +87,8 @@ std::string list_of(WordKind kind) {
 
 std::string number_text(const Word& word) {
   if (word.kind == abort_code) return fmt::format("0x{:08X}", word.number);
+  if (word.kind == block_error) return fmt::format("16#{:04X}", word.number);
+  if (word.kind == term) return {};
   return word.kind == error_code ? fmt::format("0x{:04X}", word.number) : fmt::format("{}", word.number);
 }
 
@@ -116,8 +117,8 @@ std::string_view axis_state_text(std::uint32_t state, bool latched_and_stands) {
 
 std::string_view title(WordKind kind) {
   static constexpr std::array<std::string_view, kWordKinds> kTitles{
-      "axis state",    "motion state", "link state", "mode",       "axis alarm", "gateway state",
-      "gateway alarm", "result",       "exception",  "abort code", "error code"};
+      "axis state", "motion state", "link state", "mode",       "axis alarm", "gateway state", "gateway alarm",
+      "result",     "exception",    "abort code", "error code", "ErrorID",    "term"};
   return kTitles[static_cast<std::size_t>(kind)];
 }
 
@@ -132,13 +133,16 @@ std::string_view place(WordKind kind) {
                                                                     "register 25 of the axis, `result` of DDS replies",
                                                                     "the answer to a Modbus request",
                                                                     "registers 26 and 27 of the axis after result 3",
-                                                                    "register 10 of the axis"};
+                                                                    "register 10 of the axis",
+                                                                    "output of the blocks for PLCs",
+                                                                    ""};
   return kPlaces[static_cast<std::size_t>(kind)];
 }
 
 std::optional<std::uint32_t> typed_number(std::string_view typed) {
-  const bool hex = typed.starts_with("0x") || typed.starts_with("0X");
-  if (hex) typed.remove_prefix(2);
+  const bool iec = typed.starts_with("16#");
+  const bool hex = iec || typed.starts_with("0x") || typed.starts_with("0X");
+  if (hex) typed.remove_prefix(iec ? 3 : 2);
   constexpr int kHex = 16, kDecimal = 10;
   std::uint32_t number = 0;
   const char* const last = typed.data() + typed.size();
@@ -154,7 +158,7 @@ std::vector<const Word*> look_up(std::string_view typed) {
       if (which(word)) out.push_back(&word);
   };
   if (const auto number = typed_number(typed)) {
-    take([&](const Word& word) { return word.number == *number; });
+    take([&](const Word& word) { return word.number == *number && word.kind != term; });
     return out;
   }
   const std::string wanted = plain(typed);
@@ -163,7 +167,8 @@ std::vector<const Word*> look_up(std::string_view typed) {
   // "alarm 7" is of the axes and of the gateway.
   if (number)
     take([&](const Word& word) {
-      return word.number == *number && title(word.kind).find(wanted.substr(0, blank)) != std::string_view::npos;
+      return word.number == *number && word.kind != term &&
+             plain(title(word.kind)).find(wanted.substr(0, blank)) != std::string::npos;
     });
   if (!out.empty()) return out;
   const Word* const latched = wanted == "latched" ? find_word(axis_state, 5) : nullptr;
@@ -182,12 +187,19 @@ What axisgate shows, what it means, what usually causes it and what to do. `axis
 number, and for the fault codes of the drives: `axisgate explain stop_latched`, `axisgate explain result 9`,
 `axisgate explain 0x3130`. This page is made from the table that the program itself uses.
 
+Words such as *lease*, *latch* or *owed* are in the [glossary](glossary.md). What the blocks for PLCs put into ErrorID is at the end.
+
 What happened just before a fault, a lost link or a stop that nobody asked for: the page has it as a capture, with nothing armed (docs/web.md,
 "Captures").
+
+Where somebody else helps: `axisgate support /etc/axisgate/gateway.json`, as root, writes one archive for them with the configuration, what *check*
+says of it, the log, the unit's state, devices, versions, and what a running gateway and its page show. It lists what is in it before it writes it,
+and what was taken out: comments, values of unknown keys, names of browsers' hosts, files of DDS-Security. It sends nothing anywhere.
 )";
   const auto cell = [](std::string_view text) { return " " + std::string(text) + " |"; };
   for (int k = 0; k < kWordKinds; ++k) {
     const auto kind = static_cast<WordKind>(k);
+    if (kind == term) continue;  // they have a page of their own
     out += "\n## " + std::string(title(kind)) + ": " + std::string(place(kind)) +
            "\n\n| number | name | meaning | usual causes | remedy |\n|---|---|---|---|---|\n";
     for (const Word& word : words()) {
@@ -196,6 +208,20 @@ What happened just before a fault, a lost link or a stop that nobody asked for: 
              cell(word.remedy) + "\n";
     }
   }
+  return out;
+}
+
+std::string glossary_page() {
+  std::string out = R"(# Glossary
+
+The words that one must know before the first enable. `axisgate explain latch` prints the same, for each of them; this page is made from
+the table that the program itself uses. Registers are those of an axis, counted from 0, so that register 28 of axis 1 is at 128
+([register map](../schemas/register-map.md)); alarms, results and exceptions are in [troubleshooting.md](troubleshooting.md).
+)";
+  for (const Word& word : words())
+    if (word.kind == term)
+      out += fmt::format("\n## {0}\n\n*{0}* is {1}.\n\n- **What is seen of it**: {2}.\n- **What to do**: {3}.\n",
+                         word.name, word.meaning, word.causes, word.remedy);
   return out;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the numbers that axisgate shows are called, what each means, what usually causes it and what to do.
-// Promises one table: `top`, `topics`, the log, events, the register map's page, `axisgate explain` and
-// docs/troubleshooting.md read it, so that a state has one name everywhere. Numbers of one kind are unique and rising.
+// Promises one table: `top`, `topics`, the log, events, the register map's page, `axisgate explain`,
+// docs/troubleshooting.md and docs/glossary.md read it, so that a state has one name everywhere. Numbers of one kind
+// are unique and rising.
 // Never says what a drive's own fault codes mean: that is in the drive profiles.
 #pragma once
 
@@ -28,15 +29,21 @@ enum class WordKind : std::uint8_t {
   exception,      ///< Modbus application protocol V1.1b3 section 7
   abort_code,     ///< CiA 301 table 22: in command_detail
   error_code,     ///< register 10: classes of CiA 301 table 26 and CiA 402-2; the drive's own texts are in its profile
+  block_error,    ///< ErrorID of the blocks for PLCs (deploy/plc/axisgate.st), but for those that are results
+  term,           ///< a word of the manual that one must know before the first enable; its number only orders it
 };
-inline constexpr int kWordKinds = static_cast<int>(WordKind::error_code) + 1;
+inline constexpr int kWordKinds = static_cast<int>(WordKind::term) + 1;
+/// ErrorIDs of a row that was refused: this and its offset.
+inline constexpr std::uint32_t kRefusedRowError = 0x0100, kRefusedRowErrorLast = kRefusedRowError + 0xFF;
+/// Results above are of DDS replies alone: no register and no ErrorID has them.
+inline constexpr std::uint32_t kFirstResultOfDds = 16;
 
 struct Word {
   WordKind kind{};
   std::uint32_t number = 0;  ///< of alarms: the bit
   std::string_view name;
   std::string_view meaning;
-  std::string_view causes;  ///< empty: it is no trouble
+  std::string_view causes;  ///< empty: it is no trouble; of a term: what is seen of it
   std::string_view remedy;
   bool refuses_enable = false;  ///< of axis alarms
 };
@@ -66,7 +73,7 @@ struct Word {
 [[nodiscard]] std::string modbus_text(const Outcome& outcome);
 /// The same for a DDS writer: "value outside limits (result 17 bad value (DDS))".
 [[nodiscard]] std::string dds_text(const Outcome& outcome);
-/// As it is usually written: "7", "0x06010002", "0x3130".
+/// As it is usually written: "7", "0x06010002", "0x3130", "16#0208"; a term has none.
 [[nodiscard]] std::string number_text(const Word& word);
 /// "axis state"
 [[nodiscard]] std::string_view title(WordKind kind);
@@ -74,12 +81,15 @@ struct Word {
 [[nodiscard]] std::string_view place(WordKind kind);
 
 /// What somebody who saw it might type: a name ("stop_latched", "Stop latched"), a kind and a number ("result 9"), a
-/// number alone ("9": of every kind that has it), an abort code ("0x06010002"). Empty: nothing is called so.
+/// number alone ("9": of every kind that has it), an abort code ("0x06010002"), an ErrorID ("16#0208"). Empty: nothing
+/// is called so.
 [[nodiscard]] std::vector<const Word*> look_up(std::string_view typed);
-/// A number as typed, decimal or 0x; none: it is no number, or above 32 bits.
+/// A number as typed, decimal, 0x or 16#; none: it is no number, or above 32 bits.
 [[nodiscard]] std::optional<std::uint32_t> typed_number(std::string_view typed);
 
 /// The page docs/troubleshooting.md.
 [[nodiscard]] std::string troubleshooting_page();
+/// The page docs/glossary.md: the terms.
+[[nodiscard]] std::string glossary_page();
 
 }  // namespace axisgate

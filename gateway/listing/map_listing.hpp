@@ -42,8 +42,13 @@ struct MapEntry {
   std::string unit;
   std::string_view access;  ///< "r" or "rw"
   bool supported = true;
-  std::string_view note = {};  ///< what it means, where the name does not say it
+  std::string_view note = {};     ///< what it means, where the name does not say it
+  std::string_view meaning = {};  ///< what it is, in a few words
 };
+
+/// As Modicon's controllers and many panels count: from 40001 (holding; input registers: 3 in place of the 4), 00001
+/// (coils) and 10001 (inputs); with five digits behind the first from 410000, 010000 and 110000 on.
+[[nodiscard]] std::string reference_of(const MapEntry& entry);
 
 [[nodiscard]] std::vector<MapEntry> map_entries(const ListedMap& map);
 /// As an object of JSON, its note left out.
@@ -54,8 +59,12 @@ struct MapEntry {
 enum class MapFormat : std::uint8_t { json, csv, markdown, table, structured_text };
 /// "json", "csv", "md", "table", "st".
 [[nodiscard]] std::optional<MapFormat> map_format_named(std::string_view name);
-/// Ends with a newline.
-[[nodiscard]] std::string map_text(const ListedMap& map, MapFormat format);
+inline constexpr std::size_t kUsualColumns = 80;
+/// Ends with a newline. @param columns of a terminal, for the table; at least kUsualColumns
+[[nodiscard]] std::string map_text(const ListedMap& map, MapFormat format, std::size_t columns = kUsualColumns);
+
+/// The entries as tables for people, one for each block.
+[[nodiscard]] std::string map_table(const ListedMap& map, const std::vector<MapEntry>& entries, std::size_t columns);
 
 /// The entries as IEC 61131-3 structured text.
 [[nodiscard]] std::string map_st(const ListedMap& map, const std::vector<MapEntry>& entries);

@@ -3,6 +3,8 @@
 
 #include "gateway/image/register_map.hpp"
 #include "gateway/listing/commands_page.hpp"
+#include "gateway/listing/map_listing.hpp"
+#include "gateway/listing/row_meanings.hpp"
 
 namespace axisgate::listing {
 namespace {
@@ -20,31 +22,54 @@ std::string bit_of(const RegisterRow& row) {
   return row.source == Source::quantity ? std::to_string(static_cast<unsigned>(row.quantity)) : ""s;
 }
 
+/// "where the motor is", and behind it what its note adds.
+std::string meaning(std::string_view words, std::string_view note) {
+  return std::string(words) + (note.empty() ? "" : ": ") + std::string(note);
+}
+
+/// Of the first block of its kind: axis 1, bus 0.
+std::string reference(std::string_view table, Block block, std::uint16_t offset) {
+  MapEntry entry;
+  entry.table = table;
+  entry.address = static_cast<std::uint16_t>(address_of(block, block == Block::bus ? 0 : 1) + offset);
+  if (block == Block::gateway) entry.address = offset;
+  return reference_of(entry);
+}
+
 std::string registers(Block block) {
-  std::string out =
-      "| offset | name | type | access | unit | bit | may write | meaning |\n|---|---|---|---|---|---|---|---|\n";
+  const std::string_view first = block == Block::gateway ? "from 40001"
+                                 : block == Block::bus   ? "bus 0 from 40001"
+                                                         : "axis 1 from 40001";
+  std::string out = "| offset | name | type | access | unit | bit | may write |" + cell(first) +
+                    " meaning |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const RegisterRow& row : register_table(block).rows()) {
     out += "|" + cell(std::to_string(row.offset)) + cell(row.name) + cell(text(row.type)) +
            cell(row.writable ? "rw" : "r") + cell(unit_of(row, "1/units_per_rev rev")) + cell(bit_of(row)) +
-           cell(role_of_writer(row)) + cell(row.note) + "\n";
+           cell(role_of_writer(row)) + cell(reference("holding", block, row.offset)) +
+           cell(meaning(register_meaning(block, row.name), row.note)) + "\n";
   }
   return out;
 }
 
 std::string coils() {
-  std::string out = "| offset | name | kind | 1 asks for | 0 asks for | meaning |\n|---|---|---|---|---|---|\n";
+  std::string out =
+      "| offset | name | kind | 1 asks for | 0 asks for | axis 1 from 00001 | meaning "
+      "|\n|---|---|---|---|---|---|---|\n";
   for (const CoilRow& coil : coil_rows()) {
     const auto asks = [&](Command command) { return command == Command::none ? std::string_view{} : text(command); };
     out += "|" + cell(std::to_string(coil.offset)) + cell(coil.name) + cell(coil.level ? "level" : "edge") +
-           cell(asks(coil.on)) + cell(asks(coil.off)) + cell(coil.note) + "\n";
+           cell(asks(coil.on)) + cell(asks(coil.off)) + cell(reference("coil", Block::axis, coil.offset)) +
+           cell(meaning(coil_meaning(coil.name), coil.note)) + "\n";
   }
   return out;
 }
 
 std::string inputs() {
-  std::string out = "| offset | name | meaning |\n|---|---|---|\n";
+  std::string out = "| offset | name | axis 1 from 10001 | meaning |\n|---|---|---|---|\n";
   for (const InputRow& input : input_rows())
-    out += "|" + cell(std::to_string(input.offset)) + cell(input.name) + cell(input.note) + "\n";
+    out += "|" + cell(std::to_string(input.offset)) + cell(input.name) +
+           cell(reference("discrete", Block::axis, input.offset)) +
+           cell(meaning(input_meaning(input.name), input.note)) + "\n";
   return out;
 }
 
@@ -56,7 +81,8 @@ std::string register_map_page() {
 Made from the table that the server answers from. `axisgate map CONFIG` prints the addresses of one configuration.
 
 Holding registers (FC 3, 6, 16, 22, 23) and input registers (FC 4) show the same table at the same addresses. Addresses
-count from 0; an HMI that counts from 40001 adds 1. 32-bit values take two registers, high word first, or low word first
+count from 0; what counts from 40001 (input registers from 30001, coils from 00001, inputs from 10001) adds 1, and has a digit
+more above 9999: register 10000 is 410001. 32-bit values take two registers, high word first, or low word first
 with the listener option `"word_order": "low-first"`; register 10 of the gateway block tells which. *bit* is the number of
 the quantity in `supported` and `valid`.
 
@@ -68,6 +94,9 @@ its type: i16 -32768, u16 65535, i32 -2147483648, u32 4294967295; as a setpoint 
 A block write (more than one row in a request, and every FC 23) that is refused with 0x01, 0x02 or 0x03 tells in
 `command_detail` which row it was: 0x0A000000 + the offset of the first one that the answer is about; of FC 15 the coil's
 offset. Not while a command of the same client is pending.
+
+Device identification (FC 43, MEI 14) has beside the usual objects 0x80 the number of axes, 0x81 the version of this map, 0x82 the
+word order, 0x83 the unit ids, 0x84 the numbers, 0x85 the halves, and from 0x90 on what the axes are called: lines `3 lift`, by number.
 
 ## Panels
 

@@ -36,10 +36,11 @@ std::string_view data_type(const MapEntry& entry) {
 }
 
 std::string about(const MapEntry& entry) {
-  std::string out(entry.access);
+  std::string out = reference_of(entry) + ", " + std::string(entry.access);
   if (!entry.supported) out += ", not on this drive";
   if (!entry.unit.empty()) out += ", " + entry.unit;
-  if (!entry.note.empty()) out += ": " + std::string(entry.note);
+  out += ": " + std::string(entry.meaning);
+  if (!entry.note.empty()) out += "; " + std::string(entry.note);
   return comment(out);
 }
 
@@ -52,7 +53,8 @@ std::string place(const MapEntry& entry) {
 
 std::string map_st(const ListedMap& map, const std::vector<MapEntry>& entries) {
   std::string out = comment("axisgate, register map version " + std::to_string(kMapVersion) + ", 32-bit values " +
-                            (map.low_word_first ? "low" : "high") + " word first, addresses count from 0") +
+                            (map.low_word_first ? "low" : "high") +
+                            " word first, addresses count from 0, the numbers in comments from 40001") +
                     "\n";
   for (const ListedAxis& axis : map.axes)
     out += comment("axis" + std::to_string(axis.number) + ": " + axis.name +

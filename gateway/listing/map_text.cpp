@@ -9,8 +9,8 @@
 namespace axisgate::listing {
 namespace {
 
-constexpr std::array<std::string_view, 10> kColumns{"table", "address", "count", "axis",   "bus",
-                                                    "name",  "type",    "unit",  "access", "supported"};
+constexpr std::array<std::string_view, 12> kColumns{"table", "address", "count",  "axis",      "bus",       "name",
+                                                    "type",  "unit",    "access", "supported", "reference", "meaning"};
 using Cells = std::array<std::string, kColumns.size()>;
 
 Cells cells_of(const MapEntry& entry) {
@@ -18,7 +18,8 @@ Cells cells_of(const MapEntry& entry) {
           std::to_string(entry.count), entry.axis ? std::to_string(*entry.axis) : "",
           entry.bus.value_or(""),      entry.name,
           std::string(entry.type),     entry.unit,
-          std::string(entry.access),   entry.supported ? "true" : "false"};
+          std::string(entry.access),   entry.supported ? "true" : "false",
+          reference_of(entry),         std::string(entry.meaning)};
 }
 
 /// One entry a line: readable for people, and lines can be compared between two versions of a configuration.
@@ -56,40 +57,6 @@ Cells heading() {
   return cells;
 }
 
-std::string table_line(const Cells& cells, const std::array<std::size_t, kColumns.size()>& widths) {
-  std::string line;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string gap(widths[i] - cells[i].size(), ' ');
-    const bool number = i >= 1 && i <= 3;
-    line += (number ? gap + cells[i] : cells[i] + gap) + "  ";
-  }
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line + "\n";
-}
-
-std::string aligned(const std::vector<MapEntry>& entries) {
-  std::array<std::size_t, kColumns.size()> widths{};
-  const auto widen = [&widths](const Cells& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
-  };
-  widen(heading());
-  for (const MapEntry& entry : entries) widen(cells_of(entry));
-  std::string out = table_line(heading(), widths);
-  for (const MapEntry& entry : entries) out += table_line(cells_of(entry), widths);
-  return out;
-}
-
-std::string titles(const ListedMap& map) {
-  std::string out = "map version " + std::to_string(kMapVersion) + ", 32-bit values " +
-                    (map.low_word_first ? "low" : "high") + " word first, addresses count from 0" +
-                    (map.float_numbers ? ", f32: IEEE 754" : "") + "\n";
-  for (const ListedAxis& axis : map.axes) {
-    out +=
-        "axis " + std::to_string(axis.number) + ": " + axis.name + (axis.bus.empty() ? "" : ", on " + axis.bus) + "\n";
-  }
-  return out + "\n";
-}
-
 }  // namespace
 
 nlohmann::ordered_json entry_json(const MapEntry& entry) {
@@ -121,13 +88,13 @@ std::optional<MapFormat> map_format_named(std::string_view name) {
   return kNames.named(name);
 }
 
-std::string map_text(const ListedMap& map, MapFormat format) {
+std::string map_text(const ListedMap& map, MapFormat format, std::size_t columns) {
   const std::vector<MapEntry> entries = map_entries(map);
   switch (format) {
     case MapFormat::json:
       return json_text(map, entries);
     case MapFormat::table:
-      return titles(map) + aligned(entries);
+      return map_table(map, entries, columns);
     case MapFormat::structured_text:
       return map_st(map, entries);
     case MapFormat::csv: {
@@ -136,7 +103,7 @@ std::string map_text(const ListedMap& map, MapFormat format) {
       return out;
     }
     case MapFormat::markdown: {
-      std::string out = markdown_line(heading()) + "|---|---:|---:|---:|---|---|---|---|---|---|\n";
+      std::string out = markdown_line(heading()) + "|---|---:|---:|---:|---|---|---|---|---|---|---|---|\n";
       for (const MapEntry& entry : entries) out += markdown_line(cells_of(entry));
       return out;
     }

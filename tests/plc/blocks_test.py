@@ -13,6 +13,7 @@ SOURCE = Path(sys.argv[1])
 TEXT = (SOURCE / "deploy/plc/axisgate.st").read_text(encoding="utf-8")
 EXAMPLE = (SOURCE / "deploy/plc/example.st").read_text(encoding="utf-8")
 PLAIN = (SOURCE / "deploy/plc/example_plain.st").read_text(encoding="utf-8")
+LEAST = (SOURCE / "deploy/plc/example_least.st").read_text(encoding="utf-8")
 MANUAL = (SOURCE / "docs/plc.md").read_text(encoding="utf-8")
 REGISTERS = (SOURCE / "schemas/register-map.md").read_text(encoding="utf-8")
 WORDS = (SOURCE / "gateway/core/word_table.cpp").read_text(encoding="utf-8")
@@ -51,7 +52,7 @@ class Blocks(unittest.TestCase):
 
     def test_names_are_short_enough_for_every_controller(self):
         """24 characters: the shortest limit of those that are in use."""
-        for word in set(re.findall(r"[A-Za-z_]\w*", re.sub(r"\(\*.*?\*\)", "", TEXT + EXAMPLE + PLAIN, flags=re.S))):
+        for word in set(re.findall(r"[A-Za-z_]\w*", re.sub(r"\(\*.*?\*\)", "", TEXT + EXAMPLE + PLAIN + LEAST, flags=re.S))):
             self.assertLessEqual(len(word), 24, word)
 
     def test_the_images_are_as_long_as_the_map_says(self):
@@ -126,6 +127,59 @@ class ReadError(unittest.TestCase):
         self.assertEqual(self.read(65535, self.NOT_KNOWN, supported=0), (True, True, False, 65535))
 
 
+class Least(unittest.TestCase):
+    """The program of a dozen lines, before a gateway that only reads ids back: each command that it asks for, with its id."""
+
+    def setUp(self):
+        self.machine = Machine(("example_least.st", LEAST))
+        self.power_on()
+
+    def power_on(self):
+        self.program, self.seen, self.asked = self.machine.new("Least"), 0, []
+
+    def cycles(self, wish, count=3, heard=True):
+        self.program.Wish = wish
+        for _ in range(count):
+            self.program.In1[30] = self.seen
+            self.program.run()
+            command, number = self.program.Out1[14], self.program.Out1[15]
+            if self.asked[-1:] != [(command, number)]:
+                self.asked.append((command, number))
+            self.seen = number if heard else self.seen
+
+    def test_each_wish_is_one_command_with_an_id_of_its_own_behind_a_0(self):
+        for wish in (0, 1, 6, 6, 0, 6):
+            self.cycles(wish)
+        self.assertEqual(self.asked, [(0, 1), (1, 2), (6, 3), (0, 4), (6, 5)])
+        self.assertEqual((self.program.Out1[2], self.program.Out1[3]), (0, 10000))
+        self.assertEqual((self.program.Out1[8], self.program.Out1[9]), (0, 60000))
+
+    def test_what_is_wished_at_the_start_is_not_carried_out(self):
+        for seen in (0, 1, 57):
+            self.power_on()
+            self.seen = seen
+            self.cycles(6, count=20)
+            self.assertEqual(self.asked, [(0, 1)])
+
+    def test_a_stop_waits_for_no_answer_and_the_others_do(self):
+        self.cycles(0)
+        self.cycles(1, heard=False)
+        self.cycles(6, heard=False)
+        self.assertEqual(self.asked[-1], (1, 2))
+        self.cycles(3, heard=False)
+        self.assertEqual(self.asked[-1], (3, 3))
+
+    def test_its_heartbeat_changes_in_each_cycle_and_its_id_skips_0(self):
+        beats = []
+        for _ in range(4):
+            self.cycles(0, count=1)
+            beats.append(self.program.Out1[16])
+        self.assertEqual([a != b for a, b in zip(beats, beats[1:])], [True, True, True])
+        self.program.Id = 65535
+        self.cycles(2)
+        self.assertEqual(self.asked[-1], (2, 1))
+
+
 class Xml(unittest.TestCase):
     def setUp(self):
         self.shipped = (SOURCE / "deploy/plc/axisgate.xml").read_text(encoding="utf-8")
@@ -152,24 +206,42 @@ class Xml(unittest.TestCase):
 class Manual(unittest.TestCase):
     def test_its_program_is_the_one_that_runs(self):
         # The page has its licence where all pages have it.
-        licence, program = EXAMPLE.split("\n", 1)
-        self.assertIn("SPDX", licence)
-        self.assertIn(program, MANUAL)
+        for text in (EXAMPLE, LEAST):
+            licence, program = text.split("\n", 1)
+            self.assertIn("SPDX", licence)
+            self.assertIn(program, MANUAL)
 
     def test_it_says_how_long_the_programs_are(self):
         for program in (EXAMPLE, PLAIN):
             code = re.sub(r"\(\*.*?\*\)", "", program, flags=re.S)
             self.assertIn(f" {sum(bool(line.strip()) for line in code.splitlines())} lines", MANUAL)
+        body = LEAST.rpartition("END_VAR\n")[2].partition("END_PROGRAM")[0]
+        self.assertEqual(len(body.splitlines()), 12)
+        self.assertIn("## 3. Twelve lines without blocks", MANUAL)
 
     def test_its_addresses_are_those_of_the_images(self):
         """CODESYS counts from 0, Siemens from 40001, or from 0 with a mode of its own."""
         images = {"In": (100, 39), "Out": (140, 17), "Info": (178, 18), "Preset": (178, 2)}
         codesys = re.findall(r"^\| (\w+)1 \| .* \| (\d+) \| (\d+) \|[^|]*\| `", MANUAL, re.M)
         self.assertEqual({name: (int(offset), int(length)) for name, offset, length in codesys}, images)
+        ranges = re.findall(r"^\| `(\w+)` \| 100 \* n(?: \+ (\d+))? to 100 \* n \+ (\d+) \| (\d+) to (\d+) \|", MANUAL, re.M)
+        self.assertEqual({name: (100 + int(first or 0), int(last) - int(first or 0) + 1) for name, first, last, _, _ in ranges}, images)
+        for name, _, _, first, last in ranges:
+            self.assertEqual((int(first) - 40001, int(last) - int(first) + 1), images[name])
         siemens = re.findall(r"^\| (\w+), axis 1 \| ([01]) \| (\d+) \| 1(\d\d), (\d+) \| (\d+) \|", MANUAL, re.M)
         self.assertEqual({name: (int(zero), int(length)) for name, _, _, _, zero, length in siemens}, images)
         for _, mode, one, function, zero, _ in siemens:
             self.assertEqual((int(one) - 40001, function), (int(zero), {"0": "03", "1": "16"}[mode]))
+
+    def test_its_rows_are_those_of_the_register_map(self):
+        axis = REGISTERS.partition("## Axis n: registers")[2]
+        rows = dict(re.findall(r"^\| (\d+) \| (\w+) \|", axis.partition("## Axis n: coils")[0], re.M))
+        told = re.findall(r"^\| (1\d\d)(?:, 1\d\d)? \| (4\d{4}) \| `(\w+)\[(\d+)\]`(?:, `\w+\[\d+\]`)? \| (\w+)", MANUAL, re.M)
+        self.assertGreater(len(told), 15)
+        for register, reference, image, index, name in told:
+            self.assertEqual(rows[str(int(register) - 100)], name)
+            self.assertEqual(int(reference), 40001 + int(register))
+            self.assertEqual(int(register), {"In": 100, "Out": 140}[image] + int(index))
 
     def test_its_command_numbers_are_those_of_the_register_map(self):
         row = re.search(r"^\| 54 \| command \|.*$", REGISTERS, re.M)[0]
@@ -198,6 +270,7 @@ class Manual(unittest.TestCase):
     def test_it_names_every_block_and_every_error(self):
         for name in BLOCKS:
             self.assertIn(name, MANUAL)
+        self.assertEqual([row for row in re.findall(r"^\| 16#0.*$", MANUAL, re.M) if re.search(r"\|  \|$", row)], [], "what to do about it")
         errors = set(re.findall(r"(?:ErrorID|AnswerError|Wrong|Failed) := 16#(02\w\w)", TEXT))
         self.assertEqual(errors, set(re.findall(r"^\| 16#(02\w\w) \|", MANUAL, re.M)))
 

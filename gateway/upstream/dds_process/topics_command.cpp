@@ -53,6 +53,14 @@ void put(std::string_view text) {
   if (std::ferror(stdout) != 0) ended = 1;
 }
 
+/// Of the terminal that stdout is; {0, 0} of a file. One that does not know its own size is taken for a common one.
+winsize window_size() {
+  winsize window{};
+  if (isatty(STDOUT_FILENO) != 1) return window;
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 && window.ws_row > 0;
+  return known ? window : winsize{.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+}
+
 class Terminal {
  public:
   Terminal() { put(kEnter); }
@@ -60,15 +68,14 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  void draw(std::string_view text) {
-    winsize window{};
-    const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 && window.ws_row > 0;
-    std::size_t rows = known ? window.ws_row : 50;
+  static void draw(std::string_view text) {
+    const winsize window = window_size();
+    std::size_t rows = window.ws_row;
     std::string frame = "\x1b[H";
     for (bool first = true; !text.empty() && rows > 0; --rows, first = false) {
       const std::size_t end = text.find('\n');
       if (!first) frame += "\r\n";
-      frame += text.substr(0, end).substr(0, known ? window.ws_col : 160);
+      frame += text.substr(0, end).substr(0, window.ws_col);
       frame += "\x1b[K";
       text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     }
@@ -130,7 +137,7 @@ class Topics {
 
  private:
   std::string heading() const {
-    return fmt::format("domain {}  {} axes  (rad or m, rad/s or m/s, torque in 0.1 % of rated; Ctrl-C ends)\n",
+    return fmt::format("domain {}  {} axes  (rad or m, per s; torque 0.1 % of rated; Ctrl-C ends)\n",
                        options_.participant.domain, axes_.size());
   }
 
@@ -142,7 +149,7 @@ class Topics {
   [[nodiscard]] std::string tables() const {
     const std::int64_t now = program::clock_ns(CLOCK_REALTIME);
     const std::string gateways = options_.all ? gateways_table(gateways_, now) + "\n" : std::string();
-    return gateways + topics_table(axes_, now);
+    return gateways + topics_table(axes_, now, window_size().ws_col);
   }
 
   [[nodiscard]] bool wanted(const std::string& gateway) const {

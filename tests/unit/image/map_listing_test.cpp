@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/listing/map_listing.hpp"
+#include "gateway/listing/row_meanings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -143,24 +144,83 @@ TEST(MapListing, NamesTheBusOfBusRowsAndNoAxis) {
 
 TEST(MapListing, CsvHasTheColumnsOfTheContractAndQuotesWhatNeedsIt) {
   const std::string csv = listing::map_text(two_axes(), listing::MapFormat::csv);
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "table,address,count,axis,bus,name,type,unit,access,supported");
-  EXPECT_NE(csv.find("holding,102,2,1,,position_actual,i32,1/10000 rev,r,true\n"), std::string::npos);
-  EXPECT_NE(csv.find("holding,50100,1,,\"a \"\"quoted\"\", name\",link,u16,,r,true\n"), std::string::npos);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "table,address,count,axis,bus,name,type,unit,access,supported,reference,meaning");
+  EXPECT_NE(csv.find("holding,102,2,1,,position_actual,i32,1/10000 rev,r,true,40103,where the motor is\n"),
+            std::string::npos);
+  EXPECT_NE(csv.find("holding,50100,1,,\"a \"\"quoted\"\", name\",link,u16,,r,true,450101,whether the bus is up\n"),
+            std::string::npos);
 }
 
-TEST(MapListing, MarkdownAndTableCarryTheSameRows) {
+TEST(MapListing, MarkdownCarriesTheRows) {
   listing::ListedMap piped = two_axes();
   piped.buses[1] = "a|b";
   const std::string markdown = listing::map_text(piped, listing::MapFormat::markdown);
   EXPECT_NE(markdown.find("| a\\|b |"), std::string::npos) << "a bar in a cell ends no cell";
-  EXPECT_NE(markdown.find("| holding | 102 | 2 | 1 |  | position_actual | i32 | 1/10000 rev | r | true |"),
-            std::string::npos);
-  const std::string table = listing::map_text(two_axes(), listing::MapFormat::table);
-  EXPECT_NE(table.find("axis 1: lift, on lift-serial\n"), std::string::npos);
-  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  EXPECT_NE(
+      markdown.find(
+          "| holding | 102 | 2 | 1 |  | position_actual | i32 | 1/10000 rev | r | true | 40103 | where the motor is |"),
+      std::string::npos);
   const auto rows = static_cast<std::ptrdiff_t>(listing::map_entries(two_axes()).size());
-  EXPECT_EQ(lines(markdown), rows + 2);
-  EXPECT_EQ(lines(table), rows + 1 + 4) << "a heading, and four lines of titles";
+  EXPECT_EQ(std::count(markdown.begin(), markdown.end(), '\n'), rows + 2);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(MapListing, TheTableIsReadableAtEightyColumnsAndHasEachRowOnce) {
+  const listing::ListedMap map = two_axes();
+  const std::string table = listing::map_text(map, listing::MapFormat::table);
+  EXPECT_NE(table.find("axis 1: lift, on lift-serial\n"), std::string::npos);
+  EXPECT_NE(table.find("\naxis 1 lift: registers\naddress     ref  type     name "), std::string::npos);
+  EXPECT_NE(table.find("\n    102   40103  i32  r   position_actual "), std::string::npos);
+  EXPECT_NE(table.find("where the motor is, "), std::string::npos);
+  EXPECT_NE(
+      std::regex_replace(table, std::regex("\\s+"), " ").find("temperature of the motor, 0.1 degC (not on this drive)"),
+      std::string::npos);
+  for (const char* block :
+       {"gateway", "axis 1 lift: overview", "axis 5 lift: coils", "axis 5 lift: discrete inputs", "bus 0 lift-serial"})
+    EXPECT_NE(table.find("\n" + std::string(block) + "\n"), std::string::npos) << block;
+  std::size_t rows = 0;
+  for (const std::string& line : lines_of(table)) {
+    EXPECT_LE(line.size(), 80U) << line;
+    rows += std::regex_search(line, std::regex("^ +[0-9]+ +[0-9]{5,6}  ")) ? 1U : 0U;
+  }
+  EXPECT_EQ(rows, listing::map_entries(map).size());
+  for (const std::string& line : lines_of(listing::map_text(map, listing::MapFormat::table, 200)))
+    EXPECT_FALSE(line.starts_with(std::string(40, ' '))) << "a wide terminal has room for all of it: " << line;
+}
+
+TEST(MapListing, CountsAsModiconDoes) {
+  const auto entries = listing::map_entries(two_axes());
+  const auto reference = [&](std::string_view table, int address) {
+    return listing::reference_of(*find(entries, table, address));
+  };
+  EXPECT_EQ(reference("holding", 0), "40001");
+  EXPECT_EQ(reference("holding", 102), "40103");
+  EXPECT_EQ(reference("coil", 100), "00101");
+  EXPECT_EQ(reference("discrete", 112), "10113");
+  EXPECT_EQ(reference("holding", 50000), "450001");
+  listing::MapEntry entry;
+  entry.table = "holding";
+  entry.address = 9998;
+  EXPECT_EQ(listing::reference_of(entry), "49999");
+  entry.address = 9999;
+  EXPECT_EQ(listing::reference_of(entry), "410000") << "with five digits it would be the input 10000";
+  entry.table = "coil";
+  EXPECT_EQ(listing::reference_of(entry), "010000");
+}
+
+TEST(MapListing, SaysOfEachRowWhatItIsInAFewWords) {
+  for (const listing::MapEntry& entry : listing::map_entries(two_axes())) {
+    EXPECT_FALSE(entry.meaning.empty()) << entry.name;
+    EXPECT_LE(entry.meaning.size(), listing::kLongestMeaning) << entry.name;
+  }
+  EXPECT_EQ(listing::register_meaning(Block::axis, "no_such_row"), "");
 }
 
 // Each line is one that the grammar of IEC 61131-3 allows, no identifier is there twice (they have no cases), and no
@@ -207,16 +267,19 @@ TEST(MapListing, AsStructuredTextSaysWhatARowIs) {
   EXPECT_NE(st.find("(* axis1: lift, on lift-serial *)\n"), std::string::npos);
   EXPECT_NE(st.find("  axis1_position_actual_adr : UINT := 102;\n"), std::string::npos);
   EXPECT_NE(st.find("  axis1_coil_start_absolute_adr : UINT := 104;\n"), std::string::npos);
-  EXPECT_NE(st.find("  axis5_position_actual AT %MD251 : DINT;  (* r, 1/360 rev *)\n"), std::string::npos);
-  EXPECT_NE(st.find("  axis1_target_torque AT %MW146 : INT;  (* rw, 0.1 % *)\n"), std::string::npos);
-  EXPECT_NE(st.find("  axis1_owner AT %MW128 : UINT;  (* r: 0 nobody, 1 this client, 2 another *)\n"),
+  EXPECT_NE(st.find("  axis5_position_actual AT %MD251 : DINT;  (* 40503, r, 1/360 rev: where the motor is *)\n"),
             std::string::npos);
-  EXPECT_NE(st.find("  axis1_motor_temperature AT %MW116 : INT;  (* r, not on this drive, 0.1 degC *)\n"),
+  EXPECT_NE(st.find("  axis1_target_torque AT %MW146 : INT;  (* 40147, rw, 0.1 %: "), std::string::npos);
+  EXPECT_NE(
+      st.find(
+          "  axis1_owner AT %MW128 : UINT;  (* 40129, r: who has the axis; 0 nobody, 1 this client, 2 another *)\n"),
+      std::string::npos);
+  EXPECT_NE(st.find("  axis1_motor_temperature AT %MW116 : INT;  (* 40117, r, not on this drive, 0.1 degC: "),
             std::string::npos);
   EXPECT_NE(st.find("  bus1_link AT %MW50100 : UINT;"), std::string::npos);
   map.float_numbers = true;
   EXPECT_NE(listing::map_text(map, listing::MapFormat::structured_text)
-                .find("  axis1_target_position AT %MD71 : REAL;  (* rw, rev *)\n"),
+                .find("  axis1_target_position AT %MD71 : REAL;  (* 40143, rw, rev: "),
             std::string::npos);
 }
 

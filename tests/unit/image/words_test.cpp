@@ -106,15 +106,31 @@ TEST(Words, NameTheAlarmsThatStandAgainstAnEnableAndWhatHelps) {
   for (const std::uint32_t alarm : {2U, 12U}) EXPECT_NE(against_enable(1U << alarm, 3), "") << alarm;
 }
 
-TEST(TroubleshootingPage, IsTheOneInDocs) {
-  const std::string path = test::source_path("docs/troubleshooting.md");
-  if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << troubleshooting_page();
+/// AXISGATE_WRITE_PAGES=1 ctest --test-dir BUILD -R Page writes them anew.
+void expect_page(const char* page, const std::string& made) {
+  const std::string path = test::source_path(page);
+  if (std::getenv("AXISGATE_WRITE_PAGES") != nullptr) std::ofstream(path) << made;
   std::ifstream file(path);
   std::stringstream text;
   text << file.rdbuf();
-  EXPECT_EQ(text.str(), troubleshooting_page())
-      << "docs/troubleshooting.md is not what the table says. Write it anew with\n"
-         "  AXISGATE_WRITE_PAGES=1 ctest --test-dir BUILD -R TroubleshootingPage";
+  EXPECT_EQ(text.str(), made) << page << " is not what the table says";
+}
+
+TEST(TroubleshootingPage, IsTheOneInDocs) { expect_page("docs/troubleshooting.md", troubleshooting_page()); }
+
+TEST(GlossaryPage, IsTheOneInDocs) { expect_page("docs/glossary.md", glossary_page()); }
+
+TEST(GlossaryPage, SaysOfEachWordWhatItIsWhatIsSeenAndWhatToDo) {
+  int terms = 0;
+  for (const Word& word : words()) {
+    if (word.kind != WordKind::term) continue;
+    ++terms;
+    EXPECT_FALSE(word.meaning.empty() || word.causes.empty() || word.remedy.empty()) << word.name;
+    EXPECT_THAT(glossary_page(), testing::HasSubstr("\n## " + std::string(word.name) + "\n\n*" +
+                                                    std::string(word.name) + "* is " + std::string(word.meaning)));
+    EXPECT_THAT(troubleshooting_page(), testing::Not(testing::HasSubstr(word.meaning))) << word.name;
+  }
+  EXPECT_EQ(terms, 11);
 }
 
 }  // namespace

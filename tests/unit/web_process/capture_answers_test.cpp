@@ -84,7 +84,8 @@ TEST_F(CaptureAnswers, HaveOneWithItsLinesAndEvents) {
   EXPECT_THAT(some["series"], SizeIs(2));
   EXPECT_LE(some["series"]["2.velocity_rpm"].size(), 3U * 16);
   EXPECT_THAT(refused(target + "?series=9.velocity_rpm"),
-              HasSubstr("series: '9.velocity_rpm' is none of this capture"));
+              HasSubstr("series: '9.velocity_rpm': axis 9 is not in this capture"));
+  EXPECT_THAT(refused(target + "?series=1.alarms,1.alarms"), HasSubstr("'1.alarms' is given twice"));
   EXPECT_THAT(refused(target + "?series=1.speed"), HasSubstr("series: '1.speed' is none"));
   EXPECT_THAT(refused(target + "?points=15"), HasSubstr("points: "));
   EXPECT_EQ(refused(target + "?x"), "x: there is no such parameter; there are: points, series");

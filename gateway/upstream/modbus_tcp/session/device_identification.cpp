@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint8_t kIndividual = 4;
 constexpr std::uint8_t kMore = 0xFF;
+constexpr std::size_t kLongestObject = 245;  // one object must fit one answer
 constexpr std::size_t kHead =
     7;  // function, MEI type, code, conformity, more follows, next object id, number of objects
 
@@ -25,10 +26,25 @@ void append(Pdu& pdu, const IdentificationObject& object) {
   ++pdu[kHead - 1];
 }
 
+void append_names(std::vector<IdentificationObject>& objects, const ProcessImage& image) {
+  IdentificationObject names{kNamesObject, {}};
+  for (const auto& axis : image.axes()) {
+    const std::string line = std::to_string(axis->number) + " " + axis->name + "\n";
+    if (line.size() > kLongestObject) continue;
+    if (names.value.size() + line.size() > kLongestObject) {
+      objects.push_back(names);
+      if (names.id == kLastNamesObject) return;
+      names = {static_cast<std::uint8_t>(names.id + 1), {}};
+    }
+    names.value += line;
+  }
+  objects.push_back(std::move(names));
+}
+
 }  // namespace
 
 std::vector<IdentificationObject> identification_objects(const ProcessImage& image, const ListenerSettings& settings) {
-  return {
+  std::vector<IdentificationObject> objects{
       {0x00, "axisgate"},
       {0x01, "axisgate"},
       {0x02, AXISGATE_VERSION},
@@ -43,6 +59,8 @@ std::vector<IdentificationObject> identification_objects(const ProcessImage& ima
       {kNumbersObject, settings.float_numbers ? "float" : "integer"},
       {kHalvesObject, settings.staged_halves ? "staged" : "refused"},
   };
+  append_names(objects, image);
+  return objects;
 }
 
 Pdu answer_identification(const Request& request, const std::vector<IdentificationObject>& objects) {

@@ -28,6 +28,9 @@ inline constexpr std::uint8_t kWordOrderObject = 0x82;
 inline constexpr std::uint8_t kUnitIdsObject = 0x83;
 inline constexpr std::uint8_t kNumbersObject = 0x84;
 inline constexpr std::uint8_t kHalvesObject = 0x85;
+/// From here on, without a gap: what the axes are called, one line "3 lift" each, by number. Of more than fits, the
+/// last ones are left out.
+inline constexpr std::uint8_t kNamesObject = 0x90, kLastNamesObject = 0xFF;
 
 [[nodiscard]] std::vector<IdentificationObject> identification_objects(const ProcessImage& image,
                                                                        const ListenerSettings& settings);

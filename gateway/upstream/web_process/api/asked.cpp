@@ -53,7 +53,7 @@ std::string axes_text(const Picture& picture) {
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
-std::vector<Series> series_asked(Query& query, const Picture& picture) {
+std::vector<Series> series_asked(Query& query, const NotThere& not_there) {
   const auto given = query.text("series");
   if (!given) return {};
   const auto parts = parts_of(*given, ',');
@@ -66,14 +66,20 @@ std::vector<Series> series_asked(Query& query, const Picture& picture) {
           "series: '{}' is none: an axis's number, a point and a name of its `values`, or axis_state, motion_state, "
           "link_state, alarms: 1.velocity_rpm",
           part)};
-    if (picture.find(series->axis) == nullptr)
-      throw ParameterFault{
-          fmt::format("series: '{}': there is no axis {}; there are: {}", part, series->axis, axes_text(picture))};
+    if (const std::string why = not_there(series->axis); !why.empty())
+      throw ParameterFault{fmt::format("series: '{}': {}", part, why)};
     if (std::ranges::find(out, *series) != out.end())
       throw ParameterFault{fmt::format("series: '{}' is given twice", part)};
     out.push_back(*series);
   }
   return out;
+}
+
+std::vector<Series> series_asked(Query& query, const Picture& picture) {
+  return series_asked(query, [&](std::uint16_t axis) {
+    return picture.find(axis) != nullptr ? std::string()
+                                         : fmt::format("there is no axis {}; there are: {}", axis, axes_text(picture));
+  });
 }
 
 Span span_asked(Query& query, const Now& now) {

@@ -3,6 +3,7 @@
 // Promises that what a parameter may not be is named with what it may be. Never knows a path.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,10 @@ struct Asked {
 
 // What follows throws ParameterFault where a parameter is none of those that it may be.
 
+/// Why there is nothing of this axis; empty: there is.
+using NotThere = std::function<std::string(std::uint16_t axis)>;
 /// `series`: up to kMostSeries, each once, of axes that there are; empty: it was not given.
+[[nodiscard]] std::vector<Series> series_asked(Query& query, const NotThere& not_there);
 [[nodiscard]] std::vector<Series> series_asked(Query& query, const Picture& picture);
 /// `from` and `to`: UTC, or seconds before now ("-10"); without them the last minute.
 [[nodiscard]] Span span_asked(Query& query, const Now& now);

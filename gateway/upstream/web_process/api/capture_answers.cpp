@@ -13,24 +13,12 @@ namespace {
 
 /// All that are asked for; without a word of it, those of its axis.
 std::vector<Series> lines_asked(Query& query, const Capture& capture) {
-  std::vector<Series> out;
-  const auto given = query.text("series");
-  if (!given) {
-    for (const auto& [series, points] : capture.lines)
-      if (series.axis == capture.first().axis) out.push_back(series);
-    return out;
-  }
-  const auto parts = parts_of(*given, ',');
-  if (parts.size() > kMostSeries) throw ParameterFault{fmt::format("series: at most {}", kMostSeries)};
-  for (const std::string_view part : parts) {
-    const auto series = parse_series(part);
-    if (!series || capture.find(series->axis) == nullptr)
-      throw ParameterFault{
-          fmt::format("series: '{}' is none of this capture: one of its axes, a point and a name as in /history: "
-                      "{}.velocity_rpm",
-                      part, capture.first().axis)};
-    out.push_back(*series);
-  }
+  std::vector<Series> out = series_asked(query, [&](std::uint16_t axis) {
+    return capture.find(axis) != nullptr ? std::string() : fmt::format("axis {} is not in this capture", axis);
+  });
+  if (!out.empty()) return out;
+  for (const auto& [series, points] : capture.lines)
+    if (series.axis == capture.first().axis) out.push_back(series);
   return out;
 }
 

@@ -7,15 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "gateway/upstream/web_link/capture_defaults.hpp"
 #include "gateway/upstream/web_process/capture/trigger.hpp"
 #include "gateway/upstream/web_process/time/utc.hpp"
 
 namespace axisgate::web {
 
 struct CaptureSettings {
-  SteadyNs before = 10 * kSecond;
-  SteadyNs after = 5 * kSecond;
-  std::size_t keep = 20;
+  SteadyNs before = kCaptureBeforeS * kSecond;
+  SteadyNs after = kCaptureAfterS * kSecond;
+  std::size_t keep = kCapturesKept;
   std::string folder{};  ///< empty: in memory alone
   std::vector<Trigger> triggers{};
 };

@@ -31,9 +31,7 @@ void add_counts(Families& to, const Families::Labels& bus, const BusCounts& coun
   to.add(Metric::bus_busy, bus, static_cast<double>(counts.busy_us) / kUsPerSecond);
   TimeCounts all;
   for (std::size_t i = 0; i < kExchangeClasses; ++i) {
-    const TimeCounts& times = counts.times[i];
-    for (std::size_t bucket = 0; bucket < TimeCounts::kBuckets; ++bucket) all.counts[bucket] += times.counts[bucket];
-    all.sum_ns += times.sum_ns;
+    all += counts.times[i];
     to.add(Metric::bus_wait, {bus[0], {"class", std::string(kExchangeClassNames[i])}}, counts.waits[i]);
   }
   to.add(Metric::bus_exchange_duration, bus, all);

@@ -33,6 +33,8 @@ export function open(context, searched) {
 
   function number_of(word) {
     if (typeof word.number !== "number") return String(word.number);
+    if (word.kind === "term") return "";
+    if (word.kind === "ErrorID") return `16#${hex(word.number, 4).slice(2)}`;
     return word.kind.startsWith("abort") ? hex(word.number, 8) : word.kind.startsWith("error") ? hex(word.number, 4) : String(word.number);
   }
 
