@@ -5,8 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
+
+#include "gateway/compose/changed_keys.hpp"
 
 namespace axisgate::compose {
 namespace {
@@ -64,35 +67,96 @@ std::optional<std::size_t> place_of(const std::vector<Item>& items, const Same& 
   return static_cast<std::size_t>(found - items.begin());
 }
 
-void plan_buses(const config::Config& running, const config::Config& wanted, ReloadPlan& plan) {
+/// Null: nothing that can be compared.
+nlohmann::json parsed(const std::string& text) {
+  auto read = profile::parse_json(text);
+  return std::holds_alternative<nlohmann::json>(read) ? std::get<nlohmann::json>(std::move(read)) : nullptr;
+}
+
+/// What the file said when it was read.
+nlohmann::json document_of(const config::Config& config) {
+  return config.read.empty() ? nullptr : parsed(config.read.front().text.value_or(""));
+}
+
+nlohmann::json part_of(const nlohmann::json& document, const std::string& pointer) {
+  const nlohmann::json::json_pointer place(pointer);
+  return document.contains(place) ? document.at(place) : nlohmann::json();
+}
+
+/// Beside what its section says: what the profiles of its drives say, where they have the names of before.
+std::vector<std::string> changed_profiles(const config::BusConfig& running, const config::BusConfig& wanted) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < std::min(running.drives.size(), wanted.drives.size()); ++i) {
+    const config::DriveConfig& before = running.drives[i];
+    const config::DriveConfig& after = wanted.drives[i];
+    if (before.profile != after.profile || before.profile_text == after.profile_text) continue;
+    for (const std::string& key : changed_keys(parsed(before.profile_text), parsed(after.profile_text)))
+      out.push_back(fmt::format("profile {} of drives/{}: {}", after.profile, i, key));
+  }
+  return out;
+}
+
+/// Compares the two files where a thing of both is changed.
+class Teller {
+ public:
+  Teller(const config::Config& running, const config::Config& wanted, ReloadPlan& plan)
+      : running_(document_of(running)), wanted_(document_of(wanted)), plan_(plan) {}
+
+  void tell(const std::string& change) {
+    plan_.changes.push_back(change);
+    plan_.lines.push_back(change);
+  }
+  void tell_changed(const std::string& thing, const std::string& before, const std::string& after,
+                    std::vector<std::string> more = {}) {
+    tell(thing + ": changed");
+    std::vector<std::string> keys = changed_keys(part_of(running_, before), part_of(wanted_, after));
+    keys.insert(keys.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    for (const std::string& key : bounded(std::move(keys))) plan_.lines.push_back(thing + ": " + key);
+  }
+
+ private:
+  nlohmann::json running_, wanted_;
+  ReloadPlan& plan_;
+};
+
+void plan_buses(const config::Config& running, const config::Config& wanted, ReloadPlan& plan, Teller& teller) {
   for (const config::BusConfig& bus : wanted.buses) {
     const auto before = place_of(running.buses, [&](const config::BusConfig& other) { return other.name == bus.name; });
     const bool same = before && without_places(running.buses[*before]) == without_places(bus);
     plan.kept_buses.push_back(same ? before : std::nullopt);
-    if (!same) plan.changes.push_back(fmt::format("bus {}: {}", bus.name, before ? "changed" : "added"));
+    if (!before)
+      teller.tell(fmt::format("bus {}: added", bus.name));
+    else if (!same)
+      teller.tell_changed("bus " + bus.name, running.buses[*before].pointer, bus.pointer,
+                          changed_profiles(running.buses[*before], bus));
   }
   for (std::size_t i = 0; i < running.buses.size(); ++i) {
     if (std::ranges::find(plan.kept_buses, std::optional(i)) != plan.kept_buses.end()) continue;
     plan.leaving_buses.push_back(i);
     const std::string& name = running.buses[i].name;
     if (!place_of(wanted.buses, [&](const config::BusConfig& bus) { return bus.name == name; }))
-      plan.changes.push_back(fmt::format("bus {}: removed", name));
+      teller.tell(fmt::format("bus {}: removed", name));
   }
 }
 
-void plan_listeners(const config::Config& running, const config::Config& wanted, ReloadPlan& plan) {
-  for (const auto& listener : wanted.modbus_tcp) {
+void plan_listeners(const config::Config& running, const config::Config& wanted, ReloadPlan& plan, Teller& teller) {
+  const auto pointer = [](std::size_t place) { return fmt::format("/modbus_tcp/{}", place); };
+  for (std::size_t i = 0; i < wanted.modbus_tcp.size(); ++i) {
+    const auto& listener = wanted.modbus_tcp[i];
     const auto before = place_of(running.modbus_tcp, [&](const auto& other) { return same_address(other, listener); });
     const bool same = before && running.modbus_tcp[*before] == listener;
     plan.kept_listeners.push_back(same ? before : std::nullopt);
-    if (!same) plan.changes.push_back(fmt::format("{}: {}", name_of(listener), before ? "changed" : "added"));
+    if (!before)
+      teller.tell(name_of(listener) + ": added");
+    else if (!same)
+      teller.tell_changed(name_of(listener), pointer(*before), pointer(i));
   }
   for (std::size_t i = 0; i < running.modbus_tcp.size(); ++i) {
     if (std::ranges::find(plan.kept_listeners, std::optional(i)) != plan.kept_listeners.end()) continue;
     plan.leaving_listeners.push_back(i);
     const auto& listener = running.modbus_tcp[i];
     if (!place_of(wanted.modbus_tcp, [&](const auto& other) { return same_address(other, listener); }))
-      plan.changes.push_back(name_of(listener) + ": removed");
+      teller.tell(name_of(listener) + ": removed");
   }
 }
 
@@ -100,8 +164,9 @@ void plan_listeners(const config::Config& running, const config::Config& wanted,
 
 ReloadPlan plan_reload(const config::Config& running, const config::Config& wanted) {
   ReloadPlan plan;
-  plan_buses(running, wanted, plan);
-  plan_listeners(running, wanted, plan);
+  Teller teller(running, wanted, plan);
+  plan_buses(running, wanted, plan, teller);
+  plan_listeners(running, wanted, plan, teller);
   if (const auto keys = changed_dds_keys(running.dds, wanted.dds); !keys.empty()) {
     // A default that follows another key is named as well.
     plan.refusals.push_back(
@@ -110,8 +175,10 @@ ReloadPlan plan_reload(const config::Config& running, const config::Config& want
                     fmt::join(keys, ", ")));
   }
   // Nobody's motor depends on a page.
-  if (running.web != wanted.web)
-    plan.changes.push_back(fmt::format("web: {}", !running.web ? "added" : !wanted.web ? "removed" : "changed"));
+  if (running.web && wanted.web && running.web != wanted.web)
+    teller.tell_changed("web", "/web", "/web");
+  else if (running.web.has_value() != wanted.web.has_value())
+    teller.tell(fmt::format("web: {}", wanted.web ? "added" : "removed"));
   return plan;
 }
 

@@ -26,6 +26,9 @@ struct ReloadPlan {
   std::vector<std::string> refusals;
   /// What it does, one line each: "bus lift: changed".
   std::vector<std::string> changes;
+  /// The same, and behind each thing that is changed its keys: "bus lift: drives/0/node 1 -> 2", as far as
+  /// kMostChangedKeys of each.
+  std::vector<std::string> lines;
 };
 
 [[nodiscard]] ReloadPlan plan_reload(const config::Config& running, const config::Config& wanted);

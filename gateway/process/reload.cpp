@@ -105,13 +105,15 @@ void Reload::commit(const compose::ReloadPlan& plan, config::Config wanted,
   wanted.read_by_dds = running_.read_by_dds;  // axisgate-dds has not read them anew
   with_.files.take(config::watched_files(wanted));
   running_ = std::move(wanted);
-  std::vector<std::string> lines = plan.changes;
-  if (lines.empty()) lines.emplace_back("nothing has changed");
-  with_.gateway.report(EventKind::boot, fmt::format("{} was read anew: {}", running_.file, fmt::join(lines, "; ")),
+  const std::vector<std::string> nothing{"nothing has changed"};
+  with_.gateway.report(EventKind::boot,
+                       fmt::format("{} was read anew: {}", running_.file,
+                                   fmt::join(plan.changes.empty() ? nothing : plan.changes, "; ")),
                        true);
+  for (const std::string& line : plan.lines) with_.log.write(LogLevel::info, "gateway", line, LogPace::each);
   for (const compose::StartLine& line : plan.changes.empty() ? std::vector<compose::StartLine>() : start)
     with_.log.write(LogLevel::info, line.source, line.text, LogPace::each);
-  end({true, std::move(lines)});
+  end({true, plan.lines.empty() ? nothing : plan.lines});
 }
 
 void Reload::refuse(std::vector<std::string> why_not) {

@@ -301,6 +301,31 @@ TEST_F(ReloadPlanTest, AnEditedProfileChangesItsBuses) {
   EXPECT_FALSE(before.buses[0].drives[0].profile_text.empty());
 }
 
+// Whoever reloads hears what the change was, not only where.
+TEST_F(ReloadPlanTest, EachChangedKeyIsToldWithItsValues) {
+  json wanted = running_;
+  std::swap(wanted["buses"][0], wanted["buses"][2]);
+  std::swap(wanted["modbus_tcp"][0], wanted["modbus_tcp"][1]);
+  wanted["buses"][2]["drives"][0]["axes"][0]["name"] = "hoist";
+  wanted["modbus_tcp"][1]["rearm_ms"] = 2000;
+  wanted["web"]["captures"]["keep"] = 5;
+  EXPECT_THAT(plan_reload(good(running_), good(wanted)).lines,
+              ElementsAre("bus serial: changed", "bus serial: drives/0/axes/0/name (not given) -> \"hoist\"",
+                          "listener 127.0.0.1:1502: changed", "listener 127.0.0.1:1502: rearm_ms (not given) -> 2000",
+                          "web: changed", "web: captures/keep (not given) -> 5"));
+}
+
+TEST_F(ReloadPlanTest, AKeyOfAnEditedProfileIsTold) {
+  const config::Config before = good(running_);
+  config::Config after = before;
+  json profile = json::parse(after.buses[0].drives[0].profile_text);
+  profile["title"] = "Another";
+  after.buses[0].drives[0].profile_text = profile.dump();
+  EXPECT_THAT(plan_reload(before, after).lines,
+              ElementsAre("bus serial: changed", testing::AllOf(HasSubstr("bus serial: profile kinco-jd of drives/0: "),
+                                                                HasSubstr("title "), HasSubstr(" -> \"Another\""))));
+}
+
 TEST_F(ReloadPlanTest, ThePageIsBegunAndEndedByIt) {
   json without = running_;
   without.erase("web");
