@@ -7,9 +7,14 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "gateway/commands/command_manual.hpp"
+#include "gateway/commands/command_parameters.hpp"
 #include "gateway/commands/command_profile.hpp"
+#include "gateway/commands/command_support.hpp"
 #include "gateway/commands/command_words.hpp"
 #include "gateway/commands/commands.hpp"
 #include "gateway/commands/commission/commission_command.hpp"
@@ -20,6 +25,8 @@
 #include "gateway/commands/run_command.hpp"
 #include "gateway/commands/scan/scan_command.hpp"
 #include "gateway/commands/top/top_command.hpp"
+#include "gateway/config/config_schema.hpp"
+#include "gateway/manual/configuration_page.hpp"
 #include "gateway/manual/generate.hpp"
 
 namespace axisgate::commands {
@@ -36,9 +43,11 @@ struct Parsed {
   TopicsOptions topics;
   ProfileCommands profile;
   CommissionOptions commission;
+  ParametersCommands parameters;
   ScanOptions scan;
   ExplainOptions explain;
   ReloadOptions reload;
+  SupportOptions support;
   ManualCommands manual;
   std::string scan_nodes;
   std::string scan_stations;
@@ -97,7 +106,7 @@ void add_check(CLI::App& app, Parsed& parsed) {
   CLI::App* command = add_config_command(
       app, parsed, "check", "Validate a configuration and print the plan of each bus", parsed.check.config);
   command->footer(
-      "Exit code 1: mistakes (each with file and JSON pointer), or a bus planned over 100 %.\n"
+      "Exit code 1: mistakes (each with file, line, column and JSON pointer), or a bus planned over 100 %.\n"
       "Example: axisgate check /etc/axisgate/gateway.json");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.check); });
 }
@@ -118,8 +127,11 @@ void add_map(CLI::App& app, Parsed& parsed) {
 
 void add_top(CLI::App& app, Parsed& parsed) {
   CLI::App* command = app.add_subcommand("top", "Live table of all axes of a running gateway");
-  command->add_option("HOST:PORT", parsed.top.endpoint, "the gateway's Modbus-TCP listener")->required();
-  command->add_option("CONFIG", parsed.top.config, "its configuration file: axes are shown with their names");
+  add_endpoint(*command, parsed.top.endpoint);
+  command->add_option(
+      "CONFIG", parsed.top.config,
+      "its configuration file: axes are shown with their names, and in turns; without HOST:PORT it says "
+      "where the gateway listens");
   add_profiles(*command, parsed);
   add_number(*command, "--interval", parsed.top.interval_ms, 50, 60000, "milliseconds between two tables")
       ->type_name("MS");
@@ -129,19 +141,23 @@ void add_top(CLI::App& app, Parsed& parsed) {
   command->add_flag_callback(
       "--once", [&parsed] { parsed.top.count = 1; },
       "one table, then the end; exit code 1: the gateway does not answer (for health checks)");
+  command->add_option("--note", parsed.top.notes, "a line to show below the table, on a terminal; once for each line")
+      ->allow_extra_args(false)
+      ->type_name("TEXT");
   command->footer(
-      "A terminal of 80 columns is enough. Lines in red and yellow ask for attention; NO_COLOR=1 leaves colours out.\n"
+      "A terminal of 80 columns is enough. Red is what fails, yellow what one should know; NO_COLOR=1 leaves colours "
+      "out.\n"
       "What an axis did before is in the history of the page: axisgate record AXIS --before 30.\n"
-      "Example: axisgate top 127.0.0.1:1502");
+      "Example: axisgate top 127.0.0.1:1502; axisgate top");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.top); });
 }
 
 void add_record(CLI::App& app, Parsed& parsed) {
   CLI::App* command =
       app.add_subcommand("record", "Record what axes do, as CSV, from the history of a running gateway's page");
-  command->add_option("AXIS", parsed.record.axes, "axis numbers")
+  command->add_option("AXIS", parsed.record.axes, "axis numbers, or names")
       ->required()
-      ->check(CLI::Range(1, 499).description(""));
+      ->check(CLI::Validator(axis_mistake, ""));
   CLI::Option* const seconds = add_number(*command, "--seconds", parsed.record.seconds, 1, 3600, "record for so long");
   add_number(*command, "--before", parsed.record.before, 1, 3600, "instead: the seconds before now, at once")
       ->excludes(seconds)
@@ -173,7 +189,8 @@ void add_record(CLI::App& app, Parsed& parsed) {
       "happened "
       "then; what is not\nknown is empty. Ctrl-C ends it with what there is by then.\n"
       "Exit code 1: there is no page or no such axis, or the history did not hold all of it, which is said.\n"
-      "Example: axisgate record 1 2 --seconds 20 --output lift.csv; axisgate record 1 --before 30 > stopped.csv");
+      "Example: axisgate record lift table --seconds 20 --output lift.csv; axisgate record 1 --before 30 > "
+      "stopped.csv");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.record); });
 }
 
@@ -202,9 +219,7 @@ void add_commission(CLI::App& app, Parsed& parsed) {
       add_config_command(app, parsed, "commission",
                          "Show settings of a drive that a person must decide, ask about each, and apply its remedy",
                          parsed.commission.config);
-  command->add_option("AXIS", parsed.commission.axis, "axis number")
-      ->required()
-      ->check(CLI::Range(1, 499).description(""));
+  command->add_option("AXIS", parsed.commission.axis, "axis number, or name")->required();
   command->add_flag("--yes", parsed.commission.yes,
                     "answer yes to every question, also to those that take the limit inputs away");
   command->footer(
@@ -212,7 +227,7 @@ void add_commission(CLI::App& app, Parsed& parsed) {
       "One question for each setting that is bad: only 'yes' writes what the question names, the end of the input is a "
       "no.\nBefore a write the drive is read again: what changed since the question, or has torque, is not written.\n"
       "Exit code 1: something was left as it is, or the drive cannot be reached.\n"
-      "Example: axisgate commission /etc/axisgate/gateway.json 1");
+      "Example: axisgate commission /etc/axisgate/gateway.json 1; axisgate commission gateway.json lift");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.commission); });
 }
 
@@ -299,13 +314,26 @@ void add_reload(CLI::App& app, Parsed& parsed) {
 void add_explain(CLI::App& app, Parsed& parsed) {
   CLI::App* command =
       app.add_subcommand("explain", "Say what a state, alarm, result, exception or fault code means, and what to do");
-  command->add_option("WORD", parsed.explain.words, "a name, a kind and a number, or a code; none: everything");
+  command->add_option(
+      "WORD", parsed.explain.words,
+      "a name, a kind and a number, a code, an ErrorID of the blocks for PLCs, or a word of the glossary; "
+      "none: everything");
   add_profiles(*command, parsed);
-  command->add_flag("--page", parsed.explain.page, "print docs/troubleshooting.md");
+  CLI::Option* const page = command->add_flag("--page", parsed.explain.page, "print docs/troubleshooting.md");
+  command->add_flag("--glossary", parsed.explain.glossary, "print docs/glossary.md")->excludes(page);
   command->footer(
       "Exit code 1: nothing is called so.\n"
-      "Example: axisgate explain stop_latched; axisgate explain result 9; axisgate explain 0x3130");
+      "Example: axisgate explain stop_latched; axisgate explain result 9; axisgate explain 0x3130; axisgate explain "
+      "16#0208");
   command->callback([&parsed] { choose_with_folders(parsed, parsed.explain); });
+}
+
+/// What a package ships beside the program, and beside its manual page that of gateway.json(5).
+std::optional<std::string> generated(CLI::App& app, int argc, const char* const* argv) {
+  const std::vector<std::string_view> words(argv, argv + argc);
+  if (words.size() == 3 && words[1] == "--generate" && words[2] == "gateway.json")
+    return manual::configuration_page(config::gateway_schema_text(), AXISGATE_VERSION);
+  return manual::generated(app, argc, argv);
 }
 
 }  // namespace
@@ -326,10 +354,12 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_topics(app, parsed);
   add_profile_commands(app, parsed.profile, parsed.profiles, parsed.chosen);
   add_commission(app, parsed);
+  add_parameters_commands(app, parsed.parameters, parsed.profiles, parsed.chosen);
   add_scan(app, parsed);
   add_explain(app, parsed);
   add_reload(app, parsed);
-  if (const auto text = manual::generated(app, argc, argv)) {
+  add_support_command(app, parsed.support, parsed.profiles, parsed.chosen);
+  if (const auto text = generated(app, argc, argv)) {
     std::cout << *text;
     return {.exit_code = 0, .run = {}};
   }
@@ -341,7 +371,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = app.exit(error) == 0;
+    const bool asked_for_help = error.get_exit_code() == 0;
+    const std::string meant = asked_for_help ? "" : meant_as_endpoint(app);
+    std::cerr << meant;
+    if (meant.empty()) app.exit(error);
     if (!asked_for_help) std::cerr << nearest_options(app);
     return {.exit_code = asked_for_help ? 0 : kWrongCommandLine, .run = {}};
   }

@@ -22,11 +22,13 @@ struct CheckOptions {
 /// 1: mistakes, or a bus over 100 %.
 [[nodiscard]] int run(const CheckOptions& options);
 
-/// `axisgate explain [WORD|CODE]`: what a state, alarm, result, exception, abort code or a drive's fault code means,
-/// what usually causes it and what to do, from the table that the program itself uses and from the drive profiles.
+/// `axisgate explain [WORD|CODE]`: what a state, alarm, result, exception, abort code, an ErrorID of the blocks for
+/// PLCs, a drive's fault code or a word of the manual means, what usually causes it and what to do, from the table that
+/// the program itself uses and from the drive profiles.
 struct ExplainOptions {
   std::vector<std::string> words;  ///< "result 9" comes as two; empty: all there is
   bool page = false;               ///< docs/troubleshooting.md
+  bool glossary = false;           ///< docs/glossary.md
   std::vector<std::string> profile_folders{};
 };
 /// What there is to say; empty: nothing is called so.

@@ -22,9 +22,18 @@ std::string line(std::string_view what, std::string_view text) {
 }
 
 std::string told(const Word& word) {
+  if (word.kind == WordKind::term)
+    return fmt::format("{} (docs/glossary.md)\n", word.name) + line("meaning", word.meaning) +
+           line("seen", word.causes) + line("to do", word.remedy);
   return fmt::format("{} ({} {}: {})\n", word.name, title(word.kind), number_text(word), place(word.kind)) +
          line("meaning", word.meaning) + line("causes", word.causes) + line("remedy", word.remedy) +
          line("enable", word.refuses_enable ? "is refused while it is set" : "");
+}
+
+/// By the number that was typed: to type it is no remedy, the texts of each drive are below.
+std::string told_by_code(Word word) {
+  if (word.kind == WordKind::error_code && word.remedy.starts_with("axisgate explain")) word.remedy = {};
+  return told(word);
 }
 
 std::string told(const profile::Profile& profile, const model::AlarmRow& alarm) {
@@ -33,14 +42,27 @@ std::string told(const profile::Profile& profile, const model::AlarmRow& alarm) 
   return out + ", error_code)\n" + line("meaning", alarm.text) + line("remedy", alarm.remedy);
 }
 
+std::string first_row_refused(std::uint32_t offset) {
+  const RegisterRow* row = register_table(Block::axis).covering(static_cast<std::uint16_t>(offset));
+  return line("meaning", fmt::format("a block write was refused; the first row refused is {} of the axis{}", offset,
+                                     row == nullptr ? ": there is no such row" : ", " + std::string(row->name)));
+}
+
 std::string refused_row(std::uint32_t code) {
   if (code < kRefusedRow || code > kRefusedRowLast) return "";
-  const auto offset = static_cast<std::uint16_t>(code - kRefusedRow);
-  const RegisterRow* row = register_table(Block::axis).covering(offset);
-  return fmt::format("0x{:08X} (command_detail with result 0)\n", code) +
-         line("meaning", fmt::format("a block write was refused; the first row refused is {} of the axis{}", offset,
-                                     row == nullptr ? ": there is no such row" : ", " + std::string(row->name))) +
+  return fmt::format("0x{:08X} (command_detail with result 0)\n", code) + first_row_refused(code - kRefusedRow) +
          line("remedy", "axisgate map CONFIG prints the rows that this axis has, and their limits");
+}
+
+/// Of a block for PLCs, where the table has no word of its own for it: a row, or a result.
+std::string error_of_block(std::uint32_t code, bool is_error_id) {
+  if (code > kRefusedRowError && code <= kRefusedRowErrorLast) {
+    const Word* word = find_word(WordKind::block_error, kRefusedRowError);
+    return fmt::format("16#{:04X} (ErrorID: {})\n", code, word->name) + first_row_refused(code - kRefusedRowError) +
+           line("causes", word->causes) + line("remedy", word->remedy);
+  }
+  const Word* result = is_error_id && code < kFirstResultOfDds ? find_word(WordKind::result, code) : nullptr;
+  return result == nullptr ? "" : fmt::format("16#{:04X} (ErrorID: the result in register 25)\n", code) + told(*result);
 }
 
 std::string all_there_is() {
@@ -53,15 +75,22 @@ std::string all_there_is() {
 }  // namespace
 
 std::string explanation(const std::string& typed, const std::vector<std::string>& profile_folders) {
-  std::string out;
-  for (const Word* word : look_up(typed)) out += told(*word);
+  if (constexpr std::string_view kErrorId = "ErrorID "; typed.starts_with(kErrorId))
+    return explanation(typed.substr(kErrorId.size()), profile_folders);
   const auto code = typed_number(typed);
+  if (code) {
+    // As a controller shows it, 16#0009 is the ErrorID of a block, and no bit of an alarm.
+    const std::string error = error_of_block(*code, typed.starts_with("16#"));
+    if (!error.empty()) return error;
+  }
+  std::string out;
+  for (const Word* word : look_up(typed)) out += code ? told_by_code(*word) : told(*word);
   if (!code) return out;
   out += refused_row(*code);
   constexpr std::uint32_t kLargest = 0xFFFF, kSmallest = 0x1000;
   if (out.empty() && *code >= kSmallest && *code <= kLargest)
     if (const Word* word = find_error(static_cast<std::uint16_t>(*code)); word != nullptr)
-      out += fmt::format("0x{:04X} is of the class\n", *code) + told(*word);
+      out += fmt::format("0x{:04X} is of the class\n", *code) + told_by_code(*word);
   if (*code == 0) return out;
   for (const profile::Profile& profile : profiles_in(profile_folders))
     for (const model::AlarmRow& alarm : profile.alarms)
@@ -70,8 +99,8 @@ std::string explanation(const std::string& typed, const std::vector<std::string>
 }
 
 int run(const ExplainOptions& options) {
-  if (options.page || options.words.empty()) {
-    fmt::print("{}", options.page ? troubleshooting_page() : all_there_is());
+  if (options.page || options.glossary || options.words.empty()) {
+    fmt::print("{}", options.page ? troubleshooting_page() : options.glossary ? glossary_page() : all_there_is());
     return 0;
   }
   const std::string typed = fmt::format("{}", fmt::join(options.words, " "));

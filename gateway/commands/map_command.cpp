@@ -2,6 +2,8 @@
 #include "gateway/commands/commands.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <vector>
@@ -46,6 +48,12 @@ void tell_differences(const std::vector<Listener>& listeners, const Listener& sh
                  address_text(other.host, other.port), address_text(other.host, other.port));
 }
 
+/// Of standard output; 0: it is none.
+std::size_t terminal_columns() {
+  winsize size{};
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
 listing::ListedMap listed(const config::LoadedConfig& loaded, const Listener& listener) {
   listing::ListedMap map;
   map.low_word_first = listener.low_word_first;
@@ -84,7 +92,7 @@ int run(const MapOptions& options) {
   tell_differences(listeners, *listener);
   // The command line has checked the name.
   const listing::MapFormat format = listing::map_format_named(options.format).value_or(listing::MapFormat::table);
-  fmt::print("{}", listing::map_text(listed(loaded, *listener), format));
+  fmt::print("{}", listing::map_text(listed(loaded, *listener), format, terminal_columns()));
   return 0;
 }
 

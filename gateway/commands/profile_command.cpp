@@ -82,10 +82,7 @@ int compare(const ProfileCheckOptions& options, const profile::LoadedProfile& lo
 
 int run(const ProfileCheckOptions& options) {
   const profile::LoadedProfile loaded = profile::load_profile(options.file, options.profile_folders);
-  std::vector<config::ConfigFault> faults;
-  for (const profile::Fault& fault : loaded.faults)
-    faults.push_back(config::ConfigFault{fault.file, fault.pointer, fault.message});
-  if (!faults.empty()) return tell(faults);
+  if (!loaded.faults.empty()) return tell(loaded.faults);
 
   const Profile& profile = loaded.profile;
   fmt::print("{} is valid: {}, {} motor{}, {} alarms, {} checks\n", options.file, profile.title, profile.axes.size(),

@@ -69,7 +69,7 @@ class WrongConfiguration(Story):
             done = self.command_line(command, path)
             self.assertEqual((done.returncode, done.stdout), (1, ""), done.stderr)
             for pointer in ("/modbus_tcp/0/word_order", "/colour", "/buses/0/baud", "/buses/0/drives/0/axes/0/axis"):
-                self.assertRegex(done.stderr, rf"(?m)^{path}: {pointer}\b.*")
+                self.assertRegex(done.stderr, rf"(?m)^{path}:\d+:\d+: {pointer}\b.*")
             self.assert_nothing_opened(listener)
 
     def test_what_is_no_json_is_named_with_its_line(self):

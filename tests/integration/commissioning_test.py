@@ -79,7 +79,8 @@ class FactoryFresh(Story):
         self.start()
         done = self.commission("--yes")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("the gateway stopped", done.stderr)
+        self.assertIn("a gateway runs with ", done.stderr)
+        self.assertNotIn("waiting for the drive", done.stdout)
         self.assertEqual(self.stores(), 0)
         self.axis(1).until(link_state=ONLINE)
 
@@ -131,7 +132,7 @@ class AtTheDesk(Story):
             json.dump(profile, file)
         done = self.command_line("profile", "check", path)
         self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, f"(?m)^{path}: /objects/statusword/type: ")
+        self.assertRegex(done.stderr, rf"(?m)^{path}:\d+:\d+: /objects/statusword/type: ")
 
     def test_a_profile_of_ones_own_beside_the_configuration(self):
         shutil.copy(f"{SOURCE}/schemas/drives/kinco-jd.json", self.folder)

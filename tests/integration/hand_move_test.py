@@ -22,12 +22,23 @@ class Moves(Hand):
             self.assertRegex(ended.stdout, rf"\nreached: axis {number}  2\.5000 turns  0\.0 rpm")
             self.assertEqual(self.watched(number).get("position_actual"), 25000)
             self.assert_disabled(number)
-            ended = self.hand("move", number, -1.5, "--relative", "--enable")
+            name = self.motors[number][0]
+            ended = self.by_name("move", name, "-1.5", "--relative", "--enable")
             self.assertEqual(ended.returncode, 0, ended.stderr)
+            self.assertTrue(ended.stdout.startswith(f'axis {number} "{name}" at {self.address}\n'), ended.stdout)
             self.assertEqual(self.watched(number).get("position_actual"), 10000)
             block = self.watched(number).block()
             self.assertEqual(block["owner"], NOBODY)
             self.assertNotIn("stop_latched", self.watched(number).inputs(), "nothing had to be stopped")
+        for number in self.each():
+            self.assertEqual(self.by_name("stop", self.motors[number][0][:-1]).returncode, 1, "a part of a name is none")
+            self.assertNotIn("stop_latched", self.watched(number).inputs())
+            self.assertEqual(self.by_name("stop", self.motors[number][0]).returncode, 0)
+            self.assertIn("stop_latched", self.watched(number).inputs())
+
+    def by_name(self, command, name, *rest):
+        """The gateway is found by its configuration."""
+        return self.command_line(command, name, *rest, "--config", self.config)
 
     def test_a_terminal_shows_the_position_live(self):
         program = self.on_terminal("move", 1, 20, "--velocity", 600, "--enable")

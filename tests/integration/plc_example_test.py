@@ -122,6 +122,44 @@ class WithoutBlocks(Controller):
         return self.program.Stage == 3 and image[33] == self.program.MotionId and image[32] == 1
 
 
+class LeastOfAll(Controller):
+    name, texts = "Least", ("deploy/plc/example_least.st",)
+
+    def is_ready(self):
+        return self.image("%IW0")[30] == self.image("%QW0")[ID] != 0
+
+
+class TheLeast(PlcStory):
+    """The dozen lines that the guide begins with."""
+
+    lines_of = ("serial",)
+    axis_options = {"units_per_rev": 5000, "homing_method": 35}
+
+    def wish(self, number, state):
+        self.plc.program.Wish = number
+        self.until(f"wish {number} shows", lambda: self.plc.is_ready() and self.plc.image("%IW0")[31] == state)
+
+    def test_it_enables_moves_and_stops_and_goes_on_by_nothing_but_a_new_wish(self):
+        self.begin()
+        self.plc = LeastOfAll(self)
+        self.wish(0, 0)
+        self.wish(1, 1)
+        self.wish(6, 2)
+        self.until("it is there", lambda: self.plc.image("%IW0")[32] == 2)
+        self.assertAlmostEqual(self.position(1) / COUNTS_PER_MM, 10.0, delta=0.05)
+        self.wish(3, 5)
+        self.assertIn("stop_latched", self.watched(1).inputs())
+        since = len(self.plc.commands)
+        self.plc.unplug()
+        self.cycles(5)
+        self.plc.scanner.plugged = True
+        self.until("it is back", lambda: self.plc.scanner.connected() and self.plc.is_ready())
+        self.assert_stays(1, cycles=SOME_CYCLES)
+        self.assertEqual(self.plc.commands[since:], [])
+        self.wish(1, 1)
+        self.wish(2, 0)
+
+
 class TableWithBlocks(PlcStory):
     lines_of = ("serial",)
     axis_options = {"units_per_rev": 5000, "homing_method": 35}

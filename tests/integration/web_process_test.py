@@ -12,6 +12,7 @@ import socket
 import stat
 import subprocess
 import sys
+import tarfile
 import time
 from contextlib import closing, suppress
 from datetime import datetime, timedelta
@@ -208,6 +209,12 @@ class Recorded(Page):
         self.assertEqual(done.returncode, 1)
         self.assertIn(why, done.stderr)
 
+    def helped(self, name):
+        done = self.command_line(of_page("docs/troubleshooting.md", "axisgate support").split()[1], self.config, "--yes", "--output", self.path(name))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with tarfile.open(self.path(name)) as archive:
+            return done.stdout, {os.path.basename(member.name): archive.extractfile(member).read().decode() for member in archive}
+
     def test_what_an_axis_did_and_does_comes_as_a_csv(self):
         self.run_motor()
         self.refused("there is no axis 9", "9")
@@ -218,6 +225,13 @@ class Recorded(Page):
         self.assertGreater(float(rows[-1][1]), 150)
         self.assertIn("run_velocity", "".join(row[3] for row in rows))
 
+        said, files = self.helped("moving.tar.gz")
+        self.assertTrue(self.turns(), "nobody has noticed")
+        self.assertTrue(said.startswith(files["README.txt"]))
+        self.assertGreater(json.loads(files["axes.json"])["axes"][0]["values"]["velocity_rpm"], 150)
+        for file, holds in (("events.json", "run_velocity"), ("metrics.txt", "axisgate_"), ("top.txt", "online"), ("check.txt", "http://127.0.0.1:"),
+                            ("devices.txt", f"open in axisgate (pid {self.gateway.pid}, "), ("profiles.txt", "kinco-jd.json"), ("configuration.json", "web")):
+            self.assertIn(holds, files[file], file)
         recording = self.keep(Program("record", [AXISGATE, "record", "1", "--seconds", "3600", "--csv", "--series", self.series, "--output",
                                                  self.path("stop.csv"), "--url", f"http://127.0.0.1:{self.page_port}/"]))
         recording.wait_for("Ctrl-C ends it")
@@ -233,6 +247,7 @@ class Recorded(Page):
 
         self.gateway.terminate()
         self.refused("Does the gateway run", "1")
+        self.assertRegex(self.helped("ended.tar.gz")[0], r"top.txt +axisgate top: .*: Connection refused\n(.*\n)*  page/axes.json .*: Connection refused")
         self.change(web=None)
         self.refused('no page is configured, and its history is what is recorded: add "web": {}', "1")
 

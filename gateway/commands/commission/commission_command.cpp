@@ -2,78 +2,18 @@
 #include "gateway/commands/commission/commission_command.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <algorithm>
-#include <boost/asio/io_context.hpp>
 #include <cstdio>
 
-#include "adapters/asio/asio_runtime.hpp"
-#include "adapters/asio/line_input.hpp"
-#include "gateway/commands/commission/commission_plan.hpp"
+#include "gateway/commands/commission/workbench.hpp"
 #include "gateway/commands/common/axis_place.hpp"
 #include "gateway/commands/common/config_faults.hpp"
-#include "gateway/compose/gateway.hpp"
 #include "gateway/config/config_loader.hpp"
 #include "gateway/process/device_wires.hpp"
-#include "gateway/process/stderr_log.hpp"
 
 namespace axisgate::commands {
 namespace {
-
-// A drive that has not come up by then is not there, or not on this line.
-constexpr Duration kOnlineLimit = std::chrono::seconds(15);
-constexpr Duration kWriteLimit = std::chrono::seconds(5);
-
-/// The bus of one axis, running, with nobody else on it.
-class Workbench {
- public:
-  Workbench(const config::Config& config, const compose::Models& models, std::size_t bus)
-      : log_(process::stderr_log(LogLevel::warning)), runtime_(io_) {
-    config::Config alone;
-    alone.file = config.file;
-    alone.buses = {config.buses[bus]};
-    gateway_ = std::make_unique<compose::Gateway>(alone, compose::Models{models[bus]}, runtime_, log_,
-                                                  process::device_wires(io_, runtime_, log_));
-    gateway_->start();
-  }
-  [[nodiscard]] compose::Gateway& gateway() { return *gateway_; }
-  [[nodiscard]] bool run_until(const std::function<bool()>& done, Duration limit) {
-    const Instant end = runtime_.now() + limit;
-    while (!done()) {
-      if (runtime_.now() >= end) return false;
-      io_.run_one_for(std::chrono::milliseconds(100));
-    }
-    return true;
-  }
-  /// What the person says, however long it takes: polls and heartbeats go on.
-  [[nodiscard]] std::optional<std::string> next_line() {
-    std::optional<std::string> line;
-    bool said = false;
-    person_.next([&](std::optional<std::string> typed) {
-      line = std::move(typed);
-      said = true;
-    });
-    while (!said) io_.run_one_for(std::chrono::milliseconds(100));
-    return line;
-  }
-  [[nodiscard]] BatchResult ask(AxisNumber axis, const ObjectRequest& request) {
-    WriteBatch batch;
-    batch.role = Role::engineer;
-    batch.object = request;
-    batch.start_by = batch.answer_by = runtime_.now() + kWriteLimit;
-    const auto result = std::make_shared<std::optional<BatchResult>>();  // it may come after we gave up
-    if (auto at_once = gateway_->submit(axis, batch, [result](const BatchResult& r) { *result = r; })) return *at_once;
-    if (!run_until([&] { return result->has_value(); }, kWriteLimit + kWriteLimit)) return {{Errc::timed_out, 0}, 0, 0};
-    return **result;
-  }
-
- private:
-  boost::asio::io_context io_{1};
-  Log log_;
-  AsioRuntime runtime_;
-  LineInput person_{io_, STDIN_FILENO};
-  std::unique_ptr<compose::Gateway> gateway_;
-};
 
 /// What the loop does while the person is asked, and what a yes leads to.
 class Commissioning {
@@ -99,17 +39,7 @@ class Commissioning {
   [[nodiscard]] bool input_ended() const { return input_ended_; }
   [[nodiscard]] bool all_done() const { return !left_; }
   [[nodiscard]] bool wrote() const { return wrote_; }
-  /// Read anew: the image of a value that comes by itself may be older than the answer.
-  [[nodiscard]] std::vector<AxisShown> axes_now() {
-    std::vector<AxisShown> out;
-    for (const model::AxisModel& axis : model_.axes) {
-      const bool state_known = std::ranges::all_of(
-          axis.state_sources, [&](model::ObjectId id) { return model_.object(id).emulated || read(id); });
-      const AxisImage& image = *bench_.gateway().image().find(axis.number);
-      out.push_back({axis.number, image.link_state, state_known, image.has(AxisInput::enabled)});
-    }
-    return out;
-  }
+  [[nodiscard]] std::vector<AxisShown> axes_now() { return bench_.axes_now(model_); }
 
  private:
   void leave(const std::string& why) {
@@ -129,34 +59,27 @@ class Commissioning {
   [[nodiscard]] Numbers read(const model::Check& check) {
     Numbers out;
     for (const model::ObjectId id : objects_of(model_, check))
-      if (const auto number = read(id)) out[id] = *number;
+      if (const auto number = bench_.read(model_, axis_, id)) out[id] = *number;
     return out;
-  }
-  [[nodiscard]] std::optional<std::int64_t> read(model::ObjectId id) {
-    const model::ObjectDef& object = model_.object(id);
-    const BatchResult result = bench_.ask(axis_, {false, object.address.index, object.address.sub, object.size, 0});
-    if (result.outcome.code != Errc::ok) return std::nullopt;
-    return object.number(result.object_data);
   }
   void carry_out(const model::Check& check) {
     for (const model::ObjectWrite& write : check.remedy) {
       const model::ObjectDef& object = model_.object(write.object);
       wrote_ = true;
-      const BatchResult result = bench_.ask(axis_, {true, object.address.index, object.address.sub, object.size,
-                                                    static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))});
+      const BatchResult result =
+          bench_.ask(axis_, ObjectRequest{true, object.address.index, object.address.sub, object.size,
+                                          static_cast<std::uint32_t>(static_cast<std::uint64_t>(write.raw))});
       const bool ok = result.outcome.code == Errc::ok;
       fmt::print("  {}: {}\n", text(model_, write),
                  ok ? "written" : fmt::format("{}, detail {:#x}", text(result.outcome.code), result.outcome.detail));
       left_ = left_ || !ok;
       if (!ok) break;
     }
-    static_cast<void>(bench_.run_until([&] { return is_online(); }, kOnlineLimit));
+    static_cast<void>(bench_.comes_online(axis_));  // one that stores may be unresponsive for a moment
     const ReadBack after = read_back(model_, check, read(check));
     fmt::print("{}", after.text);
     left_ = left_ || !after.cured;
   }
-  /// A drive that stores may be unresponsive for a moment.
-  [[nodiscard]] bool is_online() { return bench_.gateway().image().find(axis_)->link_state == LinkState::online; }
 
   Workbench& bench_;
   const model::DriveModel& model_;
@@ -171,17 +94,25 @@ int commission(const config::LoadedConfig& loaded, const AxisPlace& place, const
   const model::DriveModel& model = loaded.models[place.bus][place.drive];
   const config::BusConfig& bus = loaded.config.buses[place.bus];
   fmt::print("{}\n", text(loaded, place));
-  Workbench bench(loaded.config, loaded.models, place.bus);
-  fmt::print("waiting for the drive ...\n");
-  std::fflush(stdout);
-  const AxisImage& image = *bench.gateway().image().find(options.axis);
-  if (!bench.run_until([&] { return image.link_state == LinkState::online; }, kOnlineLimit)) {
-    fmt::print(stderr,
-               "axis {} does not come online ({}): is {} the right device, the gateway stopped, the drive on?\n",
-               options.axis, text(image.link_state), bus.device);
+  config::Config alone;
+  alone.file = loaded.config.file;
+  alone.buses = {bus};
+  if (const std::string why = gateway_beside(options.config); !why.empty()) {
+    fmt::print(stderr, "{}\n", why);
     return 1;
   }
-  const std::vector<Finding> found = findings(model, bench.gateway().drive_of(options.axis)->store(), place.slot);
+  Workbench bench(alone, {loaded.models[place.bus]}, process::device_wires);
+  fmt::print("waiting for the drive ...\n");
+  std::fflush(stdout);
+  const AxisNumber axis = model.axes[place.slot].number;
+  const AxisImage& image = *bench.gateway().image().find(axis);
+  if (!bench.comes_online(axis)) {
+    fmt::print(stderr,
+               "axis {} does not come online ({}): is {} the right device, the gateway stopped, the drive on?\n", axis,
+               text(image.link_state), bus.device);
+    return 1;
+  }
+  const std::vector<Finding> found = findings(model, bench.gateway().drive_of(axis)->store(), place.slot);
   for (const Finding& finding : found) fmt::print("  {}\n", text(model, finding));
   const std::vector<const model::Check*> questions = to_ask(found);
   if (questions.empty()) {

@@ -6,7 +6,6 @@
 // Never enables or moves an axis.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,7 @@ namespace axisgate::commands {
 
 struct CommissionOptions {
   std::string config;
-  std::uint16_t axis = 0;
+  std::string axis;  ///< its number, or its name
   std::vector<std::string> profile_folders;
   bool yes = false;  ///< the answer to every question
 };

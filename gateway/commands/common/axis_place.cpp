@@ -6,16 +6,25 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <vector>
 
 namespace axisgate::commands {
 
-std::optional<AxisPlace> find_axis(const config::LoadedConfig& loaded, const std::string& file, AxisNumber number) {
+std::optional<AxisPlace> find_axis(const config::LoadedConfig& loaded, const std::string& file,
+                                   const std::string& called) {
+  std::vector<AxisPlace> found;
+  std::string all;
   const auto& models = loaded.models;
   for (std::size_t b = 0; b < models.size(); ++b)
     for (std::size_t d = 0; d < models[b].size(); ++d)
-      for (std::size_t a = 0; a < models[b][d].axes.size(); ++a)
-        if (models[b][d].axes[a].number == number) return AxisPlace{b, d, static_cast<AxisSlot>(a)};
-  fmt::print(stderr, "{}: no axis {} in it\n", file, number);
+      for (std::size_t a = 0; a < models[b][d].axes.size(); ++a) {
+        const model::AxisModel& axis = models[b][d].axes[a];
+        if (called == std::to_string(axis.number) || called == axis.name)
+          found.push_back({b, d, static_cast<AxisSlot>(a)});
+        all += fmt::format("{}{} \"{}\"", all.empty() ? "" : ", ", axis.number, axis.name);
+      }
+  if (found.size() == 1) return found.front();
+  fmt::print(stderr, "{}: {} axis {} in it: there are {}\n", file, found.empty() ? "no" : "more than one", called, all);
   return std::nullopt;
 }
 

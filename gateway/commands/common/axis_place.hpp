@@ -18,9 +18,10 @@ struct AxisPlace {
   std::size_t drive = 0;
   AxisSlot slot = 0;
 };
-/// Where there is none, stderr says so, with the file.
+/// @param called its number, or its name; where there is none, or one is called as another is numbered, stderr says so,
+/// with the file
 [[nodiscard]] std::optional<AxisPlace> find_axis(const config::LoadedConfig& loaded, const std::string& file,
-                                                 AxisNumber number);
+                                                 const std::string& called);
 /// "axis 1 "lift": Kinco JD, node 1 on serial (/dev/ttyUSB0)".
 [[nodiscard]] std::string text(const config::LoadedConfig& loaded, const AxisPlace& place);
 

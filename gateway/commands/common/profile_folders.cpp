@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <set>
@@ -25,7 +26,8 @@ std::vector<std::string> profile_folders(const std::string& given) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const auto add = [&](const fs::path& folder) {
-    if (fs::is_directory(folder, error)) folders.push_back(folder.string());
+    const auto same = [&](const std::string& known) { return fs::equivalent(known, folder, error); };
+    if (fs::is_directory(folder, error) && std::ranges::none_of(folders, same)) folders.push_back(folder.string());
   };
   const fs::path bin = program.parent_path();
   add(bin.parent_path() / "share/axisgate/schemas/drives");

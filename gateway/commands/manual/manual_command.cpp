@@ -263,12 +263,6 @@ std::string rpm_mistake(const std::string& typed) {
 }
 
 int run(const ManualOptions& options) {
-  const std::string_view name = text(options.arguments.task);
-  auto place = parse_host_port(options.endpoint);
-  if (!place) {
-    fmt::print(stderr, "axisgate {}: {}\n", name, host_port_mistake(options.endpoint));
-    return kWrongCommandLine;
-  }
   ManualArguments arguments = options.arguments;
   if (arguments.task == ManualTask::jog && (::isatty(STDIN_FILENO) != 1 || ::isatty(STDOUT_FILENO) != 1)) {
     fmt::print(stderr,
@@ -277,13 +271,18 @@ int run(const ManualOptions& options) {
   }
   if (arguments.task == ManualTask::move) arguments.turns = typed_decimal(options.turns).value_or(Rational());
   if (!options.rpm.empty()) arguments.rpm = typed_decimal(options.rpm);
+  auto found = find_typed_axis(std::string(text(arguments.task)), options.typed);
+  if (!found) return 1;
+  arguments.axis = found->number;
+  if (!found->said.empty()) fmt::print("{}\n", found->said);
+  std::fflush(stdout);  // which axis it is must be read before it moves
   // A terminal or pipe that nobody reads is told by the write.
   if (std::signal(SIGPIPE, SIG_IGN) == SIG_ERR) return 1;
   ManualPlan ended(arguments, {});
   {
     // A scope of its own: the terminal is as it was before the last word is said.
     boost::asio::io_context io(1);
-    ManualMotion motion(arguments, std::move(*place), io);
+    ManualMotion motion(arguments, std::move(found->place), io);
     ended = motion.run();
   }
   return tell_end(options, ended);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `axisgate enable|move|jog|stop HOST:PORT AXIS`: one axis of a running gateway, moved manually over Modbus-TCP.
+// `axisgate enable|move|jog|stop [HOST:PORT] AXIS`: one axis of a running gateway, moved manually over Modbus-TCP.
 // Promises that the position is shown live, and that Ctrl-C, a signal, a terminal that is gone and a network that is
 // lost stop the axis: the first three by a stop that is awaited, the last one by the axis's lease. Never presses a jog
 // button but for a key.
@@ -7,15 +7,16 @@
 
 #include <string>
 
+#include "gateway/commands/client/named_axis.hpp"
 #include "gateway/commands/manual/plan/manual_plan.hpp"
 
 namespace axisgate::commands {
 
 struct ManualOptions {
-  ManualArguments arguments;
-  std::string endpoint;  ///< "HOST:PORT"
-  std::string turns;     ///< of a move, as typed
-  std::string rpm;       ///< empty: as it is
+  ManualArguments arguments;  ///< its axis is that of `typed`
+  TypedAxis typed{};
+  std::string turns;  ///< of a move, as typed
+  std::string rpm;    ///< empty: as it is
 };
 
 /// What is wrong with a number as typed; empty: nothing.

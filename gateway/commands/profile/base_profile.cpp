@@ -8,10 +8,7 @@ namespace axisgate::commands {
 BaseProfile base_profile(const std::string& name, const std::vector<std::string>& folders) {
   const auto path = profile::find_profile(name, folders);
   if (!path) return {nullptr, {{name, "", "there is no such profile in the folders of profiles"}}};
-  BaseProfile out{profile::layered_profile(*path, folders).document, {}};
-  for (const profile::Fault& fault : profile::load_profile(*path, folders).faults)
-    out.faults.push_back({fault.file, fault.pointer, fault.message});
-  return out;
+  return {profile::layered_profile(*path, folders).document, profile::load_profile(*path, folders).faults};
 }
 
 }  // namespace axisgate::commands

@@ -33,8 +33,7 @@ std::optional<std::string> write_new(const std::string& path, const std::string&
 
 /// What stands against the file as it is now.
 std::vector<config::ConfigFault> judged(const profile::LoadedProfile& loaded, const MadeFile& file) {
-  std::vector<config::ConfigFault> out;
-  for (const profile::Fault& fault : loaded.faults) out.push_back({fault.file, fault.pointer, fault.message});
+  std::vector<config::ConfigFault> out = loaded.faults;
   if (!out.empty() || file.eds == nullptr) return out;
   for (const profile::EdsContradiction& found : profile::contradictions(loaded.profile, *file.eds)) {
     const profile::Written written = profile::written_at(loaded.written, found.pointer);

@@ -15,7 +15,7 @@ int run(const ProfileUpgradeOptions& options) {
   std::vector<profile::FileRead> read;
   const auto loaded = profile::load_json(options.file, read, profile::Pipes::allowed);
   if (const auto* fault = std::get_if<profile::SchemaFault>(&loaded))
-    return tell({{options.file, fault->pointer, fault->message}});
+    return tell({{options.file, fault->pointer, fault->message, fault->place}});
   const profile::Upgraded upgraded = profile::upgraded(std::get<nlohmann::json>(loaded));
   if (!upgraded.fault.empty()) return tell({{options.file, "", upgraded.fault}});
   if (upgraded.changes.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One who looks at the page as a browser does: GET, by Boost.Beast, which is known here alone.
-// Promises an answer or a reason within kPatience, whatever the other side does. Never sends anything but GET.
+// Promises an answer or a reason within its patience, whatever the other side does. Never sends anything but GET.
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
@@ -26,12 +26,14 @@ struct PageAnswer {
 /// A connection for each request: they are seconds apart.
 class PageClient {
  public:
-  PageClient(boost::asio::io_context& io, HostPort place) : io_(io), place_(std::move(place)) {}
+  PageClient(boost::asio::io_context& io, HostPort place, std::chrono::milliseconds patience = kPatience)
+      : io_(io), place_(std::move(place)), patience_(patience) {}
   [[nodiscard]] boost::asio::awaitable<PageAnswer> get(std::string target);
 
  private:
   boost::asio::io_context& io_;
   HostPort place_;
+  std::chrono::milliseconds patience_;
 };
 
 }  // namespace axisgate::commands::record

@@ -62,11 +62,7 @@ class Output {
 class Recording {
  public:
   Recording(boost::asio::io_context& io, const RecordOptions& options, HostPort place)
-      : options_(options),
-        page_("http://" + authority_of(place) + "/"),
-        series_(series_of(options.axes, options.series)),
-        client_(io, std::move(place)),
-        pause_(io) {}
+      : options_(options), page_("http://" + authority_of(place) + "/"), client_(io, std::move(place)), pause_(io) {}
 
   /// With what there is by now.
   void end() {
@@ -104,6 +100,8 @@ class Recording {
     started_ = state->at;
     if (!state->joined && options_.before == 0)
       co_return fmt::format("{} does not hear its gateway: nothing comes in that could be recorded", page_);
+    std::string unknown = co_await find_axes();
+    if (!unknown.empty()) co_return unknown;
     answer = co_await client_.get(history_target(series_, {started_ - kSecond, started_}));
     if (!answer.problem.empty()) co_return fmt::format("{}: {}", page_, answer.problem);
     if (answer.status != kGood) co_return refusal(answer);
@@ -118,6 +116,29 @@ class Recording {
       fmt::print(stderr, "axisgate record: {} series for {} s; Ctrl-C ends it with what there is\n", count_of(series_),
                  options_.seconds);
     co_return problem;
+  }
+
+  /// The page is asked for names only where one was typed. Empty: it has all of them.
+  awaitable<std::string> find_axes() {
+    std::vector<AxisNumber> axes;
+    std::optional<AxisNames> names;
+    for (const std::string& typed : options_.axes) {
+      if (const auto number = axis_number_in(typed)) {
+        axes.push_back(*number);
+        continue;
+      }
+      if (!names) {
+        const PageAnswer answer = co_await client_.get("/api/v1/axes");
+        if (!answer.problem.empty()) co_return fmt::format("{}: {}", page_, answer.problem);
+        if (answer.status != kGood) co_return refusal(answer);
+        names = names_of_axes(answer.body);
+      }
+      const auto meant = axis_meant(typed, *names, nullptr);
+      if (const auto* why = std::get_if<std::string>(&meant)) co_return *why;
+      axes.push_back(std::get<AxisNumber>(meant));
+    }
+    series_ = series_of(axes, options_.series);
+    co_return std::string();
   }
 
   awaitable<std::string> take(const Piece& piece) {
@@ -174,7 +195,7 @@ class Recording {
 
   const RecordOptions& options_;
   const std::string page_;
-  const std::string series_;
+  std::string series_{};  ///< once the axes are found
   PageClient client_;
   boost::asio::steady_timer pause_;
   Output output_;
@@ -215,7 +236,7 @@ std::optional<HostPort> page_of(const RecordOptions& options) {
 }  // namespace
 
 int run(const RecordOptions& options) {
-  const std::size_t count = count_of(series_of(options.axes, options.series));
+  const std::size_t count = count_of(series_of(std::vector<AxisNumber>(options.axes.size(), 1), options.series));
   if (count > kMostSeries)
     return say(fmt::format("{} series are more than the page answers at once, which is {}: name fewer axes, or fewer "
                            "values with --series",

@@ -13,11 +13,11 @@
 namespace axisgate::commands {
 
 struct RecordOptions {
-  std::vector<std::uint16_t> axes;
-  std::uint32_t seconds = 10;  ///< from now on
-  std::uint32_t before = 0;    ///< instead: the seconds before now, at once
-  std::string series;          ///< names of values with commas between; empty: a sensible five
-  std::string output;          ///< a file; empty: standard output
+  std::vector<std::string> axes;  ///< numbers, or names as the page has them
+  std::uint32_t seconds = 10;     ///< from now on
+  std::uint32_t before = 0;       ///< instead: the seconds before now, at once
+  std::string series;             ///< names of values with commas between; empty: a sensible five
+  std::string output;             ///< a file; empty: standard output
   std::string url = "http://127.0.0.1:8080/";
   std::string config;  ///< takes the page's address from this file; empty: `url` has it
   std::vector<std::string> profile_folders{};

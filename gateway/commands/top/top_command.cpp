@@ -10,9 +10,11 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <csignal>
+#include <iterator>
 #include <map>
 
 #include "gateway/commands/client/host_port.hpp"
+#include "gateway/commands/client/named_axis.hpp"
 #include "gateway/commands/client/top_client.hpp"
 #include "gateway/commands/common/config_faults.hpp"
 #include "gateway/commands/top/top_screen.hpp"
@@ -33,11 +35,13 @@ constexpr std::uint8_t kTargetFailed = 0x0B;  // a listener with "offline_reads"
 
 class Top {
  public:
-  using Names = std::map<AxisNumber, std::string>;
-  Top(boost::asio::io_context& io, const TopOptions& options, HostPort place, Names names)
+  using Axes = std::map<AxisNumber, config::AxisConfig>;
+  /// `asks_names`: of the gateway, for axes that `axes` has not.
+  Top(boost::asio::io_context& io, const TopOptions& options, HostPort place, Axes axes, bool asks_names)
       : options_(options),
         place_(std::move(place)),
-        names_(std::move(names)),
+        axes_(std::move(axes)),
+        asks_names_(asks_names),
         client_(io),
         pause_(io),
         screen_(options.plain) {}
@@ -68,7 +72,7 @@ class Top {
       problem = co_await refresh();
       if (!problem.empty()) co_return problem;
       problem_.clear();
-      screen_.show_table(table_lines(reading_, screen_.columns()));
+      show();
       if (++shown_ == options_.count) co_return std::string();
       co_await wait(std::chrono::milliseconds(options_.interval_ms));
     }
@@ -84,20 +88,37 @@ class Top {
     const ObjectRead numbers = co_await client_.identification(modbus_tcp::kNumbersObject, kAnswerLimit);
     if (!numbers.problem.empty()) co_return numbers.problem;
     reading_.float_numbers = numbers.text == "float";
+    if (asks_names_) {
+      NamesRead told = co_await read_names(client_, kAnswerLimit);
+      if (!told.problem.empty()) co_return told.problem;
+      names_ = std::move(told.names);
+    }
     const std::uint16_t expected = reading_.gateway[1];
     for (AxisNumber axis = 1; axis <= kMaxAxisNumber && reading_.axes.size() < expected; ++axis) {
       const RegistersRead read =
           co_await client_.read(address_of(Block::axis, axis) + axis_offset(Source::supported), 2, kAnswerLimit);
       if (!read.connected()) co_return read.problem;
       const bool supports = read.ok() && (read.registers[0] != 0 || read.registers[1] != 0);
-      if (supports || read.exception == kTargetFailed) reading_.axes.push_back({axis, {}, name_of_axis(axis)});
+      if (supports || read.exception == kTargetFailed) reading_.axes.push_back(as_configured(axis));
     }
     co_return std::string();
   }
 
-  [[nodiscard]] std::string name_of_axis(AxisNumber axis) const {
-    const auto found = names_.find(axis);
-    return found == names_.end() ? std::string() : found->second;
+  [[nodiscard]] AxisReading as_configured(AxisNumber axis) const {
+    const auto found = axes_.find(axis);
+    if (found == axes_.end()) {
+      const auto name = names_.find(axis);
+      return {.axis = axis, .name = name == names_.end() ? std::string() : name->second};
+    }
+    return {.axis = axis, .name = found->second.name, .units_per_rev = found->second.units_per_rev};
+  }
+
+  void show() {
+    std::vector<TopLine> lines = table_lines(reading_, screen_.columns());
+    if (screen_.redraws())
+      std::ranges::move(lines_below(reading_, options_.notes, screen_.columns(), screen_.colours()),
+                        std::back_inserter(lines));
+    screen_.show_table(lines);
   }
 
   awaitable<std::string> refresh() {
@@ -135,7 +156,9 @@ class Top {
 
   TopOptions options_;
   HostPort place_;
-  Names names_;
+  Axes axes_;          ///< of the configuration, where it is given
+  AxisNames names_{};  ///< of the gateway, where it was asked
+  bool asks_names_;
   TopClient client_;
   boost::asio::steady_timer pause_;
   TopScreen screen_;
@@ -170,26 +193,35 @@ bool show_until_told(Top& top, boost::asio::io_context& io, std::uint32_t second
 
 }  // namespace
 
-int run(const TopOptions& options) {
-  auto place = parse_host_port(options.endpoint);
+int run(const TopOptions& asked) {
+  TopOptions options = asked;
+  std::optional<HostPort> place;
+  if (asked.endpoint.empty()) {
+    const auto own = own_place("top", asked.config);
+    if (!own) return kWrongCommandLine;
+    place = own->place;
+    options.endpoint = modbus_tcp::address_text(place->host, place->port);
+  } else {
+    place = parse_host_port(options.endpoint);
+  }
   if (!place) {
     fmt::print(stderr, "axisgate top: {}\n", host_port_mistake(options.endpoint));
     return kWrongCommandLine;
   }
-  Top::Names names;
+  Top::Axes axes;
   if (!options.config.empty()) {
     const config::LoadResult result = config::load_config(options.config, options.profile_folders);
     if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
     for (const config::BusConfig& bus : std::get<config::LoadedConfig>(result).config.buses)
       for (const config::DriveConfig& drive : bus.drives)
-        for (const config::AxisConfig& axis : drive.axes) names[axis.number] = axis.name;
+        for (const config::AxisConfig& axis : drive.axes) axes[axis.number] = axis;
   }
   std::string problem;
   bool has_shown = false;
   {
     // A scope of its own: the terminal is as it was before the last word is said.
     boost::asio::io_context io(1);
-    Top top(io, options, std::move(*place), std::move(names));
+    Top top(io, options, std::move(*place), std::move(axes), asked.endpoint.empty());
     if (show_until_told(top, io, options.seconds)) return 0;
     problem = top.problem();
     has_shown = top.has_shown();

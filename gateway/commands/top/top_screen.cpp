@@ -49,10 +49,15 @@ std::string terminal_frame(std::span<const TopLine> lines, std::size_t columns, 
   std::string frame(kHome);
   for (std::size_t i = 0; i < std::min(lines.size(), rows); ++i) {
     if (i != 0) frame += "\r\n";
+    const std::string_view text = std::string_view(lines[i].text).substr(0, columns);
     const Attention asks = colours ? lines[i].asks : Attention::none;
-    if (asks != Attention::none) frame += asks == Attention::act ? kRed : kYellow;
-    frame += lines[i].text.substr(0, columns);
-    if (asks != Attention::none) frame += kPlain;
+    const std::size_t plain = asks == Attention::none ? text.size() : std::min(lines[i].asks_from, text.size());
+    frame += text.substr(0, plain);
+    if (plain < text.size()) {
+      frame += asks == Attention::act ? kRed : kYellow;
+      frame += text.substr(plain);
+      frame += kPlain;
+    }
     frame += kWipeLine;
   }
   frame += kWipeBelow;

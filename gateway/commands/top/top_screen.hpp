@@ -14,8 +14,8 @@
 
 namespace axisgate::commands {
 
-/// One frame of a redrawn terminal: `lines` cut to the window and what was there before wiped. Pure. `colours`: lines
-/// that ask for attention are yellow or red.
+/// One frame of a redrawn terminal: `lines` cut to the window and what was there before wiped. Pure. `colours`: what
+/// asks for attention is yellow or red.
 [[nodiscard]] std::string terminal_frame(std::span<const TopLine> lines, std::size_t columns, std::size_t rows,
                                          bool colours = false);
 
@@ -26,6 +26,9 @@ class TopScreen : boost::noncopyable {
 
   /// Of the window; 0: lines may be as long as they like.
   [[nodiscard]] std::size_t columns() const;
+  /// A terminal is redrawn in place: what stands below the table stays there.
+  [[nodiscard]] bool redraws() const { return redraws_; }
+  [[nodiscard]] bool colours() const { return colours_; }
   void show_table(const std::vector<TopLine>& table);
   /// On a terminal above the last table; in plain output only when it changes, so that a log is not filled with it.
   void show_message(const std::string& message);

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kFunction = 0x780;
 constexpr std::uint32_t kSdoToNode = 0x600, kSdoFromNode = 0x580, kErrorControl = 0x700;
 constexpr unsigned kSpecifierAt = 5;
-enum Specifier : unsigned { upload = 2, upload_segment = 3, abort_transfer = 4, block_upload = 5 };
+enum Specifier : unsigned { upload = 2, upload_segment = 3, abort_transfer = 4, block_upload = 5, block_download = 6 };
 
 }  // namespace
 
@@ -20,6 +20,7 @@ bool may_leave(const LinkGuard& guard, const can::CanFrame& frame) {
   if (!guard.only_reads) return true;
   if (frame.extended || frame.remote || function != kSdoToNode || frame.size == 0) return false;
   const unsigned specifier = static_cast<unsigned>(frame.data[0]) >> kSpecifierAt;
+  if (guard.writes_objects) return specifier <= block_download;
   return specifier >= upload && specifier <= block_upload;
 }
 

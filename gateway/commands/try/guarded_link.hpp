@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CAN link of a trial: what leaves is looked at first. Promises that while it only reads, nothing but requests to
 // read an object (CiA 301, SDO upload) leaves, whatever the layers above send, and that while heartbeats are withheld
-// neither the gateway's own nor a node guarding request does. Never changes a frame.
+// neither the gateway's own nor a node guarding request does; and that where it writes objects alone, nothing but
+// reads and writes of objects leaves. Never changes a frame.
 #pragma once
 
 #include <memory>
@@ -14,6 +15,7 @@ namespace axisgate::commands {
 /// Shared with whoever decides; outlives the link.
 struct LinkGuard {
   bool only_reads = true;
+  bool writes_objects = false;  ///< beside the reads, writes of objects may leave (SDO download)
   bool withholds = false;
 };
 /// Pure.

@@ -3,10 +3,7 @@
 
 #include <utility>
 
-#include "adapters/can/link/make_can_link.hpp"
-#include "adapters/canopen/canopen_wire.hpp"
-#include "gateway/compose/can_wires.hpp"
-#include "gateway/process/device_wires.hpp"
+#include "gateway/commands/try/read_only_drive.hpp"
 
 namespace axisgate::commands {
 namespace {
@@ -15,18 +12,6 @@ constexpr Duration kStartLimit = std::chrono::seconds(5);
 constexpr Duration kAnswerLimit = std::chrono::seconds(12);
 constexpr Duration kLease = std::chrono::seconds(2);
 constexpr ClientId kUs = 1;
-
-/// What would be written at bring-up is left out.
-model::DriveModel only_read(model::DriveModel model) {
-  model.setup.clear();
-  model.factory_writes.clear();
-  model.loss_objects.clear();
-  model::CanopenProperties& node = model.canopen;
-  node.tpdos.clear();
-  node.unused_tpdos.clear();
-  node.heartbeat = node.guard_time = node.own_heartbeat = node.sync = Duration{};
-  return model;
-}
 
 /// As configured, but for what a person beside a motor needs.
 model::DriveModel owned(model::DriveModel model) {
@@ -62,18 +47,9 @@ void TryBench::begin(bool whole) {
   guard_ = {.only_reads = !whole};
   compose::Models models(1);
   models[0].push_back(whole ? owned(model_) : only_read(model_));
-  gateway_ = std::make_unique<compose::Gateway>(config_, models, runtime_, log_, make_wire());
+  gateway_ =
+      std::make_unique<compose::Gateway>(config_, models, runtime_, log_, guarded_wires(io_, runtime_, log_, guard_));
   gateway_->start();
-}
-
-compose::MakeWire TryBench::make_wire() {
-  const compose::MakeWire make = process::device_wires(io_, runtime_, log_);
-  return [this, make](const config::BusConfig& bus, const std::vector<model::DriveModel>& drives) {
-    if (!model::is_canopen(drives[0])) return make(bus, drives);
-    auto link = std::make_unique<GuardedLink>(
-        can::make_can_link(bus.device, bus.bitrate, bus.name, io_, runtime_, log_), guard_);
-    return canopen::make_canopen_wire(compose::canopen_settings(bus, drives), std::move(link), runtime_, log_);
-  };
 }
 
 TryLook TryBench::seen() {

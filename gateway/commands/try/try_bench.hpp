@@ -35,7 +35,6 @@ class TryBench {
 
  private:
   void begin(bool whole);
-  [[nodiscard]] compose::MakeWire make_wire();
   [[nodiscard]] AxisNumber number() const { return model_.axes[slot_].number; }
 
   boost::asio::io_context& io_;

@@ -176,7 +176,7 @@ int run(const TryOptions& options) {
       config::load_config(options.config, options.profile_folders, profile::Pipes::refused, config::OpenAsks::allowed);
   if (const auto* faults = std::get_if<std::vector<config::ConfigFault>>(&result)) return tell(*faults);
   const auto& loaded = std::get<config::LoadedConfig>(result);
-  const auto place = find_axis(loaded, options.config, options.axis);
+  const auto place = find_axis(loaded, options.config, std::to_string(options.axis));
   return place ? try_axis(loaded, *place, options) : 1;
 }
 

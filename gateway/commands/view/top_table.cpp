@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "gateway/core/binary32.hpp"
+#include "gateway/core/shown_words.hpp"
 #include "gateway/core/words.hpp"
 #include "gateway/image/command.hpp"
 #include "gateway/image/process_image.hpp"
@@ -47,6 +48,15 @@ class AxisCells {
                                : static_cast<double>(static_cast<std::int32_t>(bits)) / kUnits;
     return good(Quantity::velocity_actual) && rpm > -kTremble && rpm < kTremble;
   }
+  /// The position in turns of the motor, as number(). Of a register of floats it is that number already.
+  [[nodiscard]] std::string turns(const Rational& units_per_rev) const {
+    const std::string position = number(Quantity::position_actual, 0);
+    if (floats_ || position == "?" || position == "-") return position;
+    constexpr std::int64_t kOfATurn = 1000;
+    const auto turns =
+        (Rational(kOfATurn) / units_per_rev).scale(static_cast<std::int32_t>(pair(Quantity::position_actual)));
+    return turns ? with_point(*turns, 3) + (good(Quantity::position_actual) ? "" : "?") : "?";
+  }
   [[nodiscard]] bool good(Quantity quantity) const { return (pair(Source::valid) & bit(quantity)) != 0; }
 
  private:
@@ -73,24 +83,16 @@ class AxisCells {
 std::string mode_text(const AxisCells& cells) {
   const auto mode = static_cast<std::int16_t>(cells.word(Quantity::mode_display));
   if (mode == no_value(RegisterType::i16)) return "?";
-  const Word* word = mode < 0 ? nullptr : find_word(WordKind::mode, static_cast<std::uint32_t>(mode));
-  std::string name = mode < 0 ? fmt::format("own {}", mode) : fmt::format("mode {}", mode);
-  if (word != nullptr) name = word->name;
-  return name + (cells.good(Quantity::mode_display) ? "" : "?");
+  return shown_mode(mode) + (cells.good(Quantity::mode_display) ? "" : "?");
 }
 
 /// error_code is shown as the gateway gives it: for an axis out of reach it is the reason itself (0x8130), not an old
 /// value.
 std::string error_text(const AxisCells& cells) {
-  const std::uint16_t code = cells.word(Quantity::error_code);
   const bool faulted = cells.word(Source::axis_state) == static_cast<std::uint16_t>(AxisState::error_stop);
-  if (code == no_value(RegisterType::u16)) return faulted ? std::string(find_error(code)->name) : "?";
   const std::uint32_t vendor = cells.pair(Quantity::vendor_error);
-  const bool has_vendor = cells.good(Quantity::vendor_error) && vendor != 0 && vendor != no_value(RegisterType::u32);
-  const Word* word = find_error(code);
-  std::string shown = code == 0 ? "none" : fmt::format("0x{:04X}", code);
-  if (word != nullptr) shown += fmt::format(" {}", word->name);
-  return has_vendor ? fmt::format("{} (0x{:X})", shown, vendor) : shown;
+  const bool has_vendor = cells.good(Quantity::vendor_error) && vendor != no_value(RegisterType::u32);
+  return shown_error(cells.word(Quantity::error_code), has_vendor ? vendor : 0, faulted);
 }
 
 std::string age_text(std::uint16_t age) { return age == 0xFFFF ? ">65 s" : fmt::format("{}", age); }
@@ -109,7 +111,7 @@ constexpr std::string_view kAlarms = "alarms:";
 
 /// What a line of the table tells of an axis.
 struct AxisTexts {
-  std::string number, name, link, state, mode, position, velocity, torque, current, age, error, alarms;
+  std::string number, name, link, state, mode, position, turns, velocity, torque, current, age, error, alarms;
   Attention of_state = Attention::none;
   bool alarmed = false;
 };
@@ -142,6 +144,7 @@ AxisTexts texts_of(const AxisReading& axis, WordOrder order, bool float_numbers)
           .state = std::string(axis_state_text(cells.word(Source::axis_state), latched_and_stands(cells))),
           .mode = mode_text(cells),
           .position = cells.number(Quantity::position_actual, 0),
+          .turns = axis.units_per_rev ? cells.turns(*axis.units_per_rev) : std::string(),
           .velocity = velocity_text(cells),
           .torque = cells.number(Quantity::torque_actual, 1),
           .current = cells.number(Quantity::current_actual, 2),
@@ -153,50 +156,101 @@ AxisTexts texts_of(const AxisReading& axis, WordOrder order, bool float_numbers)
           .alarmed = cells.pair(Source::axis_alarms) != 0};
 }
 
-TopLine wide_row(const AxisTexts& t, std::size_t name_width) {
-  const std::string name = name_width == 0 ? std::string() : fmt::format("  {:<{}}", t.name, name_width);
-  return {fmt::format("{:>4}{}  {:<9}  {:<17}  {:<17}  {:>12}  {:>12}  {:>8}  {:>9}  {:>6}  {:<18}  {}", t.number, name,
-                      t.link, t.state, t.mode, t.position, t.velocity, t.torque, t.current, t.age, t.error, t.alarms),
-          t.of_state == Attention::none && t.alarmed ? Attention::look : t.of_state};
+/// What the configuration tells has columns where it is given.
+struct Widths {
+  std::size_t name = 0;
+  bool turns = false;
+};
+
+TopLine wide_row(const AxisTexts& t, Widths widths) {
+  const std::string name = widths.name == 0 ? std::string() : fmt::format("  {:<{}}", t.name, widths.name);
+  const std::string turns = widths.turns ? fmt::format("  {:>10}", t.turns) : std::string();
+  TopLine row{
+      fmt::format("{:>4}{}  {:<9}  {:<17}  {:<17}  {:>12}{}  {:>12}  {:>8}  {:>9}  {:>6}  {:<18}  ", t.number, name,
+                  t.link, t.state, t.mode, t.position, turns, t.velocity, t.torque, t.current, t.age, t.error),
+      t.of_state};
+  if (t.of_state == Attention::none && t.alarmed) {
+    row.asks = Attention::look;
+    row.asks_from = row.text.size();
+  }
+  row.text += t.alarms;
+  return row;
 }
 
 AxisTexts column_names() {
-  return {"axis",         "name",     "link",      "state",  "mode",  "position",
+  return {"axis",         "name",     "link",      "state",  "mode",  "position", "turns",
           "velocity rpm", "torque %", "current A", "age ms", "error", "alarms"};
 }
 
-/// Between words, so that no line is longer; one word that is, stands alone. The line in which alarms begin asks for
-/// attention.
+/// Between words, so that no line is longer; one word that is, stands alone. From the word "alarms:" on it asks for
+/// attention where there are some.
 std::vector<TopLine> wrapped(std::string_view text, std::size_t columns, std::string_view first_indent,
-                             std::string_view indent, bool alarmed) {
+                             std::string_view indent, bool alarmed = false) {
   std::vector<TopLine> lines;
+  bool asks = false;
   while (!text.empty()) {
     const std::size_t end = text.find(' ');
     const std::string_view word = text.substr(0, end);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
-    if (lines.empty() || lines.back().text.size() + 1 + word.size() > columns)
-      lines.push_back({std::string(lines.empty() ? first_indent : indent) + std::string(word)});
+    const bool begins = lines.empty() || lines.back().text.size() + 1 + word.size() > columns;
+    if (begins)
+      lines.push_back({std::string(lines.empty() ? first_indent : indent), asks ? Attention::look : Attention::none});
     else
-      lines.back().text += " " + std::string(word);
-    if (alarmed && word == kAlarms) lines.back().asks = Attention::look;
+      lines.back().text += " ";
+    if (alarmed && word == kAlarms) {
+      asks = true;
+      lines.back().asks = Attention::look;
+      lines.back().asks_from = lines.back().text.size();
+    }
+    lines.back().text += word;
   }
   return lines;
 }
 
-constexpr std::string_view kNarrowRow = "{:>4}  {:<9}  {:<17}  {:>12}  {:>14}  {:>9}";
+/// Longer names stand in the line below.
+constexpr std::size_t kNarrowName = 14;
 
-TopLine narrow_row(const AxisTexts& t) {
-  return {fmt::format(fmt::runtime(kNarrowRow), t.number, t.link, t.state, t.position, t.velocity, t.torque),
-          t.of_state};
+TopLine narrow_row(const AxisTexts& t, std::size_t name_width) {
+  const std::string name =
+      name_width == 0 || name_width > kNarrowName ? std::string() : fmt::format("  {:<{}}", t.name, name_width);
+  return {
+      fmt::format("{:>4}{}  {:<9}  {:<17}  {:>12}  {:>14}", t.number, name, t.link, t.state, t.position, t.velocity),
+      t.of_state};
 }
 
-std::vector<TopLine> more_of(const AxisTexts& t, std::size_t columns) {
-  std::string more = t.name.empty() ? std::string() : t.name + ": ";
-  more += t.mode + ", " + t.current + " A, age " + t.age + " ms";
+/// Below that row: what had no room in it, and its alarms.
+std::vector<TopLine> more_of(const AxisTexts& t, std::size_t name_width, std::size_t columns) {
+  std::string more = name_width > kNarrowName ? t.name + ": " : std::string();
+  if (!t.turns.empty()) more += t.turns + " turns, ";
+  more += t.mode + ", ";
+  if (t.torque != "-") more += "torque " + t.torque + " %, ";
+  if (t.current != "-") more += t.current + " A, ";
+  more += "age " + t.age + " ms";
   if (t.error != "none") more += ", error " + t.error;
-  if (t.alarmed) more += fmt::format(", {} {}", kAlarms, t.alarms);
   constexpr std::string_view kIndent = "      ";
-  return wrapped(more, columns, kIndent, kIndent, t.alarmed);
+  std::vector<TopLine> lines = wrapped(more, columns, kIndent, kIndent);
+  if (t.alarmed)
+    std::ranges::move(wrapped(fmt::format("{} {}", kAlarms, t.alarms), columns, kIndent, kIndent, true),
+                      std::back_inserter(lines));
+  return lines;
+}
+
+/// What somebody would ask of first: of a fault, else of an alarm. Empty: of nothing.
+std::string worth_explaining(const TopReading& reading, WordOrder order) {
+  std::string alarm;
+  for (const AxisReading& axis : reading.axes) {
+    const AxisCells cells(axis, order, reading.float_numbers);
+    const std::uint16_t code = cells.word(Quantity::error_code);
+    if (code != 0 && code != no_value(RegisterType::u16) && find_error(code) != nullptr)
+      return fmt::format("0x{:04X}", code);
+    const std::uint32_t alarms = cells.pair(Source::axis_alarms);
+    if (alarm.empty() && alarms != 0)
+      alarm = names_of_bits(WordKind::axis_alarm, std::uint32_t{1} << std::countr_zero(alarms));
+  }
+  const std::uint32_t alarms = reading.gateway[6];
+  if (alarm.empty() && alarms != 0)
+    alarm = names_of_bits(WordKind::gateway_alarm, std::uint32_t{1} << std::countr_zero(alarms));
+  return alarm;
 }
 
 }  // namespace
@@ -228,26 +282,43 @@ std::vector<TopLine> table_lines(const TopReading& reading, std::size_t columns)
                   up / 3600, up / 60 % 60, up % 60, role_text(reading.gateway[7]), kAlarms,
                   alarms_text(WordKind::gateway_alarm, alarms, "none"));
   std::vector<AxisTexts> axes;
-  std::size_t name_width = 0;
+  Widths widths;
   for (const AxisReading& axis : reading.axes) {
     axes.push_back(texts_of(axis, order, reading.float_numbers));
-    name_width = std::max(name_width, axis.name.size());
+    widths.name = std::max(widths.name, axis.name.size());
+    widths.turns = widths.turns || (axis.units_per_rev && !reading.float_numbers);
   }
-  if (name_width != 0) name_width = std::max(name_width, column_names().name.size());
-  std::vector<TopLine> rows{{first, alarms != 0 ? Attention::look : Attention::none},
-                            wide_row(column_names(), name_width)};
-  for (const AxisTexts& axis : axes) rows.push_back(wide_row(axis, name_width));
+  if (widths.name != 0) widths.name = std::max(widths.name, column_names().name.size());
+  std::vector<TopLine> rows = wrapped(first, first.size(), "", "", alarms != 0);
+  rows.push_back(wide_row(column_names(), widths));
+  for (const AxisTexts& axis : axes) rows.push_back(wide_row(axis, widths));
   const auto fits = [&](const TopLine& row) { return row.text.size() <= columns; };
   if (columns != 0 && !std::ranges::all_of(rows, fits)) {
     rows = wrapped(first, columns, "", "  ", alarms != 0);
-    rows.push_back(narrow_row(column_names()));
+    rows.push_back(narrow_row(column_names(), widths.name));
     for (const AxisTexts& axis : axes) {
-      rows.push_back(narrow_row(axis));
-      std::ranges::move(more_of(axis, columns), std::back_inserter(rows));
+      rows.push_back(narrow_row(axis, widths.name));
+      std::ranges::move(more_of(axis, widths.name, columns), std::back_inserter(rows));
     }
   }
   if (reading.axes.empty()) rows.push_back({"no axes"});
   return rows;
+}
+
+std::vector<TopLine> lines_below(const TopReading& reading, std::span<const std::string> notes, std::size_t columns,
+                                 bool colours) {
+  std::vector<TopLine> lines;
+  const auto add = [&](std::string_view text) {
+    if (lines.empty()) lines.push_back({});
+    std::ranges::move(wrapped(text, columns, "", "  "), std::back_inserter(lines));
+  };
+  const std::string subject = worth_explaining(reading, word_order(reading.gateway));
+  const bool words = std::ranges::count(subject, ' ') != 0;
+  if (!subject.empty())
+    add(fmt::format("{}axisgate explain {}", colours ? "yellow warns, red has failed; more: " : "what it means: ",
+                    words ? "\"" + subject + "\"" : subject));
+  for (const std::string& note : notes) add(note);
+  return lines;
 }
 
 std::string text_of(std::span<const TopLine> lines) {

@@ -2,16 +2,19 @@
 // The table that `axisgate top` shows: registers in, text out. Pure: no socket, no terminal, no clock.
 // Promises that a value which is not good now is marked ('?' after it, '?' alone where there never was one, '-' where
 // the drive has none), so that nobody takes an old number for a fresh one; states, alarms and faults in words. Where
-// the terminal is narrow an axis takes several lines. Never cuts a number short.
+// the terminal is narrow an axis takes several lines. Never cuts a number short. An alarm beside a state that is right
+// colours its own words alone: a whole line in colour is an axis that fails.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "gateway/core/rational.hpp"
 #include "gateway/image/axis_image.hpp"
 
 namespace axisgate::commands {
@@ -24,7 +27,8 @@ inline constexpr std::uint16_t kGatewayRegisters = 12;
 struct AxisReading {
   AxisNumber axis = 0;
   std::array<std::uint16_t, kAxisRegisters> registers{};
-  std::string name{};  ///< by the configuration, where it is known
+  std::string name{};                       ///< by the configuration, where it is known
+  std::optional<Rational> units_per_rev{};  ///< by the configuration: its position is shown in turns as well
 };
 
 struct TopReading {
@@ -46,16 +50,20 @@ void mark_out_of_reach(AxisReading& axis);
 /// Below this one line an axis has no room.
 inline constexpr std::size_t kNarrow = 80;
 
-/// How much a line of the table asks for somebody's attention.
+/// How much a line of the table asks for somebody's attention, from its character `asks_from` on.
 enum class Attention : std::uint8_t { none, look, act };
 struct TopLine {
   std::string text;
   Attention asks = Attention::none;
+  std::size_t asks_from = 0;
 };
 
 /// The first line tells of the gateway, the next names the columns, then the axes: one line each, or two and more where
 /// that would not fit into `columns` (at least kNarrow is needed; 0: there is no end).
 [[nodiscard]] std::vector<TopLine> table_lines(const TopReading& reading, std::size_t columns = 0);
+/// What stands below it: which command says more of what is coloured (nothing where nothing is), then each of `notes`.
+[[nodiscard]] std::vector<TopLine> lines_below(const TopReading& reading, std::span<const std::string> notes,
+                                               std::size_t columns, bool colours);
 /// The same as text, each line ended by '\n'.
 [[nodiscard]] std::string text_of(std::span<const TopLine> lines);
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace axisgate::commands {
 namespace {
 
@@ -23,6 +25,15 @@ TEST(GuardedLink, WhileItOnlyReadsNothingButReadRequestsLeave) {
   EXPECT_FALSE(may_leave(guard, can::remote_frame(0x705, 1)));
   EXPECT_TRUE(may_enter(guard, frame(0x585, Byte{0x43})));
   EXPECT_FALSE(may_enter(guard, frame(0x705, Byte{0x7F})));
+}
+
+TEST(GuardedLink, WhereItWritesObjectsNothingElseLeaves) {
+  const LinkGuard guard{.only_reads = true, .writes_objects = true};
+  for (const Byte specifier : std::to_array<Byte>({0x40, 0x23, 0x00, 0xC2, 0x80}))
+    EXPECT_TRUE(may_leave(guard, frame(0x605, specifier))) << int{specifier};
+  EXPECT_FALSE(may_leave(guard, frame(0x000, Byte{0x01})));  // NMT start
+  EXPECT_FALSE(may_leave(guard, frame(0x77F, Byte{0x05})));  // heartbeat
+  EXPECT_FALSE(may_leave(guard, frame(0x205, Byte{0x0F})));  // a PDO with a controlword
 }
 
 TEST(GuardedLink, WithheldHeartbeatsDoNotLeaveAndStopsDo) {

@@ -77,6 +77,10 @@ class FakePage {
     const std::lock_guard lock(mutex_);
     ctrl_c_ = true;
   }
+  [[nodiscard]] std::string asked_last() {
+    const std::lock_guard lock(mutex_);
+    return asked_;
+  }
   [[nodiscard]] std::string url() const {
     return "http://127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port()) + "/";
   }
@@ -97,6 +101,7 @@ class FakePage {
   }
   [[nodiscard]] std::string answer(const std::string& target) {
     const std::lock_guard lock(mutex_);
+    asked_ = target;
     if (target.starts_with("/api/v1/history?") && std::exchange(ctrl_c_, false)) ::kill(::getpid(), SIGINT);
     if (!once_.first.empty() && target.starts_with(once_.first)) return std::exchange(once_, {}).second;
     if (target == "/api/v1/gateway")
@@ -113,6 +118,7 @@ class FakePage {
   tcp::acceptor acceptor_{io_, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0)};
   std::mutex mutex_;
   std::pair<std::string, std::string> once_;
+  std::string asked_;
   bool ctrl_c_ = false;
   std::string oldest_ = "2026-11-28T20:00:00.000000Z";
   std::string joined_ = "true";
@@ -140,7 +146,7 @@ struct RecordCommand : testing::Test {
   /// Seconds before now are there at once.
   [[nodiscard]] RecordOptions before(std::uint32_t seconds) const {
     RecordOptions options;
-    options.axes = {1};
+    options.axes = {"1"};
     options.series = "velocity_rpm";
     options.before = seconds;
     options.url = page.url();
@@ -165,6 +171,20 @@ TEST_F(RecordCommand, PutsTheSecondsBeforeNowTogether) {
   }
   EXPECT_EQ(said.out, wanted);
   EXPECT_EQ(said.err, "");
+}
+
+TEST_F(RecordCommand, TakesAnAxisByTheNameThatThePageHas) {
+  const std::string axes = http(200, R"({"axes":[{"axis":2,"name":"table"},{"axis":1,"name":"lift"},{"axis":-1},7]})");
+  RecordOptions options = before(1);
+  options.axes = {"lift"};
+  page.answer_once("/api/v1/axes", axes);
+  EXPECT_THAT(said_by(options).out, StartsWith(kColumns));
+  EXPECT_THAT(page.asked_last(), HasSubstr("series=1.velocity_rpm"));
+  options.axes = {"1", "lif"};
+  page.answer_once("/api/v1/axes", axes);
+  const Said said = said_by(options);
+  EXPECT_EQ(said.status, 1);
+  EXPECT_THAT(said.err, HasSubstr("is called 'lif'; did you mean \"lift\"? it has 1 \"lift\", 2 \"table\""));
 }
 
 TEST_F(RecordCommand, WritesAFileInstead) {
@@ -247,7 +267,7 @@ TEST_F(RecordCommand, AsksAgainWhereThePageIsFull) {
 
 TEST_F(RecordCommand, RefusesMoreSeriesThanThePageAnswers) {
   RecordOptions options = before(1);
-  options.axes.assign(17, 1);
+  options.axes.assign(17, "1");
   const Said said = said_by(options);
   EXPECT_EQ(said.status, 2);
   EXPECT_THAT(said.err, HasSubstr("17 series are more than the page answers at once, which is 16"));

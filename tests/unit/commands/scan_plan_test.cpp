@@ -246,7 +246,13 @@ TEST_F(Scan, ShowsHowAConfigurationMayBegin) {
       HasSubstr("\n  {\"profile\": \"leadshine-ld2-can\", \"node\": 3, \"identity\": {\"vendor\": 301, \"product\": "
                 "302}, \"axes\": [{\"axis\": 3}]},\n"
                 "  {\"profile\": \"kinco-md\", \"node\": 14, \"identity\": {\"vendor\": 1401, \"product\": 1402}, "
-                "\"axes\": [{\"axis\": 14}]}\n"));
+                "\"constants\": {\n    \"peak_current_a\": \"FILL IN\", // peak current of the drive model in A: "
+                "MD60-020 36"));
+  EXPECT_THAT(table,
+              HasSubstr("\n    \"rated_current_a\": \"FILL IN\" // rated current of the motor, from its name plate; "
+                        "without it torque quantities are not supported\n  }, \"axes\": [{\"axis\": 14}]}\n"));
+  EXPECT_THAT(table, HasSubstr("yours to choose; for each \"FILL IN\" write the number from the type plate of drive or "
+                               "motor, or from the manual):\n"));
   EXPECT_THAT(table, Not(HasSubstr("fits best"))) << "where all of a profile is there, no other is worth a word";
 }
 

@@ -162,6 +162,8 @@ TEST(SerialScan, ProposesABusForEachProtocolAndRate) {
       HasSubstr("{\"name\": \"line\", \"adapter\": \"modbus-rtu\", \"device\": \"/dev/ttyUSB0\", \"baud\": 19200, "
                 "\"drives\": [\n    {\"profile\": \"id286pro\", \"node\": 1, \"axes\": [{\"axis\": 1}]},\n    "
                 "{\"profile\": \"id286pro\", \"node\": 2,"));
+  EXPECT_THAT(serial_scan_table(plan.found(), "/dev/ttyUSB0"), HasSubstr("are yours to choose):\n"))
+      << "nothing is to be filled in";
 }
 
 }  // namespace

@@ -6,53 +6,19 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
+#include <fstream>
 #include <thread>
 
-#include "adapters/asio/asio_runtime.hpp"
-#include "gateway/upstream/modbus_tcp/client/client_registry.hpp"
-#include "gateway/upstream/modbus_tcp/server/descriptors.hpp"
-#include "gateway/upstream/modbus_tcp/server/server.hpp"
-#include "tests/unit/modbus_server/filled_image.hpp"
+#include "tests/places.hpp"
+#include "tests/unit/commands/running_server.hpp"
 
 namespace axisgate::commands {
 namespace {
 
+using test_server::RunningServer;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-class RunningServer {
- public:
-  explicit RunningServer(modbus_tcp::ListenerSettings settings = {}, AxisNumber axes = 3) {
-    test::fill_image(image_, axes, runtime_.now());
-    settings.port = settings.port == 1502 ? 0 : settings.port;
-    server_ =
-        std::make_unique<modbus_tcp::Server>(io_, runtime_, std::span(&settings, 1), image_, port_, clients_, log_);
-    server_->start(modbus_tcp::take_descriptors({.clients = settings.max_clients}));
-    listening_on_ = server_->ports()[0];
-    thread_ = std::thread([this] { io_.run(); });
-  }
-  ~RunningServer() {
-    boost::asio::post(io_, [this] { server_->stop(); });
-    thread_.join();
-  }
-  RunningServer(const RunningServer&) = delete;
-  RunningServer& operator=(const RunningServer&) = delete;
-  [[nodiscard]] std::uint16_t port() const { return listening_on_; }
-  [[nodiscard]] std::string endpoint() const { return "127.0.0.1:" + std::to_string(listening_on_); }
-
- private:
-  boost::asio::io_context io_{1};
-  AsioRuntime runtime_{io_};
-  ProcessImage image_;
-  test::RememberingPort port_;
-  modbus_tcp::ClientRegistry clients_;
-  Log log_;
-  std::unique_ptr<modbus_tcp::Server> server_;
-  std::uint16_t listening_on_ = 0;
-  std::thread thread_;
-};
 
 struct Shown {
   int status = 0;
@@ -108,6 +74,22 @@ TEST(TopCommand, SeesAllAxesWhereAListenerShowsOnePerUnitId) {
   EXPECT_THAT(shown_by(once(server.endpoint())).out, AllOf(HasSubstr("  100000  "), HasSubstr("  300000  ")));
 }
 
+TEST(TopCommand, FindsTheGatewayByItsConfigurationAndAsksItForTheNamesThatThisHasNot) {
+  const RunningServer server({}, 2, {{1, "lift"}, {2, "table"}});
+  const std::string file = testing::TempDir() + "top_gateway.json";
+  std::ofstream(file) << R"({"modbus_tcp": [{"listen": ")" << server.endpoint()
+                      << R"("}], "buses": [{"name": "s", "adapter": "kinco-serial", "device": "/dev/ttyUSB0",
+    "rs485": "off", "drives": [{"profile": "kinco-jd", "node": 1, "constants": {"peak_current_a": 27.5}, "axes": [{"axis": 1, "name": "lift"}]}]}]})";
+  TopOptions options;
+  options.count = 1;
+  options.config = file;
+  options.profile_folders = {test::source_path("schemas/drives")};
+  const Shown shown = shown_by(options);
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_THAT(shown.out,
+              AllOf(HasSubstr("axisgate " + server.endpoint()), HasSubstr("  lift "), HasSubstr("  table ")));
+}
+
 TEST(TopCommand, SaysWhyWhenNobodyListens) {
   std::uint16_t port = 0;
   {
@@ -152,7 +134,7 @@ TEST(TopCommand, SaysThatTheGatewayIsGoneAndComesBackWhenItDoes) {
 }
 
 TEST(TopCommand, AnEndpointThatIsNoneIsAWrongCommandLine) {
-  for (const char* endpoint : {"", "localhost", ":1502", "localhost:", "localhost:x", "localhost:70000", "::1:1502"}) {
+  for (const char* endpoint : {"localhost", ":1502", "localhost:", "localhost:x", "localhost:70000", "::1:1502"}) {
     const Shown shown = shown_by(once(endpoint));
     EXPECT_EQ(shown.status, 2) << endpoint;
     EXPECT_THAT(shown.err, HasSubstr("is no HOST:PORT")) << endpoint;

@@ -200,6 +200,7 @@ TEST(TopTable, ReadsBothWordOrders) {
 TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {
   AxisReading axis = good_axis(499);
   axis.name = "lift";
+  axis.units_per_rev = Rational(10000);
   put32(axis, 2, 0x80000001);
   put32(axis, 4, 0x80000001);
   axis.registers[6] = 0x8001;
@@ -216,13 +217,57 @@ TEST(TopTable, FitsIntoEightyColumnsWithEveryNumberWhole) {
   for (const TopLine& line : lines) EXPECT_LE(line.text.size(), kNarrow) << line.text;
   const std::string table = text_of(lines);
   for (const char* whole :
-       {" -2147483647? ", " -2147483.647? ", " -3276.7?", "lift: profile position?, -327.67? A, age 12 ms",
-        "error 0x8130 no contact", "offline", "discrete motion"})
+       {" 499  lift  offline    discrete motion    -2147483647?   -2147483.647?\n",
+        "-214748.365? turns, profile position?, torque -3276.7? %, -327.67? A, age\n      12 ms, error 0x8130 no "
+        "contact"})
     EXPECT_THAT(table, HasSubstr(whole));
   for (const Word& word : axisgate::words())
     if (word.kind == WordKind::axis_alarm && word.number < kAxisAlarmCount) {
       EXPECT_THAT(table, HasSubstr(std::string(word.name)));
     }
+}
+
+TEST(TopTable, ShowsAPositionInTurnsWhereTheConfigurationIsGiven) {
+  AxisReading axis = good_axis(1);
+  axis.units_per_rev = Rational(60000, 37);
+  TopReading reading = reading_of({axis, good_axis(2)});
+  const auto lines = lines_of(table_lines(reading));
+  EXPECT_THAT(lines[1], HasSubstr("position       turns  velocity rpm"));
+  EXPECT_THAT(lines[2], HasSubstr("  123456      76.131       -12.500"));
+  EXPECT_THAT(lines[3], HasSubstr("  123456                   -12.500")) << "an axis that is not in it";
+  put32(reading.axes[0], 22, 0);
+  EXPECT_THAT(lines_of(table_lines(reading))[2], HasSubstr(" 76.131? "));
+  reading.axes[0].registers[2] = 0x8000;
+  reading.axes[0].registers[3] = 0;
+  EXPECT_THAT(lines_of(table_lines(reading))[2], HasSubstr("           ?           ?  "));
+  reading.float_numbers = true;
+  EXPECT_THAT(lines_of(table_lines(reading))[1], Not(HasSubstr("turns"))) << "as the register is";
+}
+
+TEST(TopTable, ANameThatLeavesNoRoomStandsInTheLineBelow) {
+  AxisReading axis = good_axis(1);
+  axis.name = "a-name-of-fifteen-and-more";
+  const auto lines = lines_of(table_lines(reading_of({axis}), kNarrow));
+  EXPECT_THAT(lines, testing::Contains(HasSubstr("      a-name-of-fifteen-and-more: profile position, ")));
+  for (const std::string& line : lines) EXPECT_LE(line.size(), kNarrow) << line;
+}
+
+TEST(TopTable, SaysBelowWhichCommandExplainsWhatIsColoured) {
+  TopReading reading = reading_of({good_axis(1), good_axis(2)});
+  EXPECT_THAT(lines_below(reading, {}, kNarrow, true), SizeIs(0)) << "nothing is";
+  reading.gateway[6] = 1U << static_cast<unsigned>(GatewayAlarm::bus_down);
+  EXPECT_THAT(text_of(lines_below(reading, {}, kNarrow, true)), EndsWith("axisgate explain \"bus down\"\n"));
+  put32(reading.axes[1], 34, bit(AxisAlarm::no_comm_watchdog) | bit(AxisAlarm::not_homed));
+  EXPECT_EQ(text_of(lines_below(reading, {}, kNarrow, true)),
+            "\nyellow warns, red has failed; more: axisgate explain no_comm_watchdog\n");
+  EXPECT_EQ(text_of(lines_below(reading, {}, kNarrow, false)), "\nwhat it means: axisgate explain no_comm_watchdog\n");
+  reading.axes[1].registers[10] = 0x3210;
+  EXPECT_THAT(text_of(lines_below(reading, {}, kNarrow, true)), EndsWith("axisgate explain 0x3210\n"));
+}
+
+TEST(TopTable, ShowsNotesBelowAndBreaksThemBetweenWords) {
+  const std::array<std::string, 2> notes{"short", "one two three"};
+  EXPECT_EQ(text_of(lines_below(reading_of({}), notes, 8, true)), "\nshort\none two\n  three\n");
 }
 
 TEST(TopTable, StaysOneLineAnAxisWhereThereIsRoom) {
@@ -258,8 +303,10 @@ TEST(TopScreen, ColoursAnAxisWithAlarmsInBothLayoutsAndNoOther) {
   for (const TopLine& line : table_lines(reading)) wide.push_back(line.asks);
   using enum Attention;
   EXPECT_THAT(wide, ElementsAre(none, none, none, look, look));
-  EXPECT_THAT(terminal_frame(table_lines(reading), 60, 50, true), HasSubstr("\x1b[33m   2  online"))
-      << "also where the window cuts the alarms off";
+  const std::string frame = terminal_frame(table_lines(reading), 200, 50, true);
+  EXPECT_THAT(frame, AllOf(HasSubstr("  \x1b[33mnot_homed\x1b[0m"), HasSubstr("\r\n   2  online")))
+      << "its alarms alone: the axis does what it should";
+  EXPECT_THAT(terminal_frame(table_lines(reading), 60, 50, true), Not(HasSubstr("\x1b[33m")));
   std::vector<std::string> narrow;
   for (const TopLine& line : table_lines(reading, kNarrow))
     if (line.asks == look) narrow.push_back(line.text);

@@ -94,6 +94,18 @@ std::optional<PageState> page_state(std::string_view text) {
   return PageState{*at, object["joined"].get<bool>()};
 }
 
+AxisNames names_of_axes(std::string_view text) {
+  AxisNames names;
+  const json object = read(text);
+  if (!object.is_object() || !object.contains("axes")) return names;
+  for (const json& axis : object["axes"]) {
+    const bool numbered = axis.is_object() && axis.contains("axis") && axis["axis"].is_number_unsigned();
+    const auto number = numbered ? axis_number_in(axis["axis"].dump()) : std::nullopt;
+    if (number) names[*number] = text_of(axis, "name");
+  }
+  return names;
+}
+
 std::optional<UtcNs> oldest_of(std::string_view text) { return parse_utc(text_of(read(text), "oldest")); }
 
 std::string detail_of(std::string_view text) { return text_of(read(text), "detail"); }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gateway/commands/client/axis_names.hpp"
 #include "gateway/commands/client/host_port.hpp"
 #include "gateway/commands/record/plan/pieces.hpp"
 
@@ -39,6 +40,8 @@ struct PageState {
 };
 /// None: it is no answer of axisgate's page.
 [[nodiscard]] std::optional<PageState> page_state(std::string_view json);
+/// What the axes are called, of /api/v1/axes.
+[[nodiscard]] AxisNames names_of_axes(std::string_view json);
 /// How far the history reaches back, of /api/v1/history; none: it does not say.
 [[nodiscard]] std::optional<UtcNs> oldest_of(std::string_view json);
 /// Of application/problem+json; empty: it has none.
