@@ -15,6 +15,7 @@ struct Options {
   std::vector<std::string> lines;
   std::vector<std::string> faults;
   std::string control;
+  std::string terminals;
   bool cascade = false;
   bool rs485 = false;
   bool factory_fresh = false;
@@ -75,6 +76,9 @@ void describe_options(CLI::App& app, Options& options) {
                  "NAME@LINE/STATION[=RATE], for example unresponsive@lift/1 or corrupt@table/2=0.01");
   app.add_option("--control", options.control, "Path of a Unix socket that takes commands while the simulator runs")
       ->type_name("PATH");
+  app.add_option("--terminals", options.terminals,
+                 "Folder of a devpts in which the ptys are made, for containers that share it; else the system's")
+      ->type_name("DIR");
 }
 
 void build(Simulator& simulator, Control& control, const Options& options) {
@@ -118,7 +122,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     const Descriptor end_signals = block_end_signals();
-    Simulator simulator;
+    Simulator simulator(options.terminals);
     Control control(simulator);
     std::optional<ControlSocket> socket;
     build(simulator, control, options);

@@ -16,15 +16,18 @@
 namespace axisgate::simulated {
 namespace {
 
+constexpr const char* kSystems = "/dev/pts/";
+
 [[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what + ": " + std::strerror(errno)); }
 
-void make_link(const std::string& link, const std::string& slave) {
+void make_link(const std::string& link, const std::string& slave, const std::string& terminals) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status there = fs::symlink_status(link, error);
   if (fs::is_symlink(there)) {
     // One that an earlier simulator left behind; any other link is the user's own.
-    if (!fs::read_symlink(link, error).string().starts_with("/dev/pts/")) {
+    const std::string to = fs::read_symlink(link, error).string();
+    if (!to.starts_with(kSystems) && !to.starts_with(terminals + "/")) {
       throw std::runtime_error(link + " is a link to something else: remove it or choose another path");
     }
     fs::remove(link, error);
@@ -35,25 +38,37 @@ void make_link(const std::string& link, const std::string& slave) {
   if (error) throw std::runtime_error("cannot make the link " + link + " (does its folder exist?): " + error.message());
 }
 
+Descriptor open_master(const std::string& terminals) {
+  constexpr int kHow = O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;
+  if (terminals.empty()) {
+    Descriptor master(::posix_openpt(kHow));
+    if (master.get() < 0) fail("cannot open a pseudo-terminal");
+    return master;
+  }
+  const std::string path = terminals + "/ptmx";
+  Descriptor master(::open(path.c_str(), kHow));
+  if (master.get() < 0)
+    fail("cannot open " + path + " (is a devpts mounted there, with ptmxmode=0666: mount -t devpts ...?)");
+  return master;
+}
+
 }  // namespace
 
-Pty::Pty(const std::string& link) : link_(link) {
-  master_ = Descriptor(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (master_.get() < 0) fail("cannot open a pseudo-terminal");
+Pty::Pty(const std::string& link, const std::string& terminals) : link_(link), master_(open_master(terminals)) {
   if (::grantpt(master_.get()) != 0 || ::unlockpt(master_.get()) != 0) fail("cannot unlock the pseudo-terminal");
-  std::array<char, 64> name{};
-  if (::ptsname_r(master_.get(), name.data(), name.size()) != 0) fail("cannot name the pseudo-terminal");
-  slave_name_ = name.data();
-  slave_ = Descriptor(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  unsigned number = 0;
+  if (::ioctl(master_.get(), TIOCGPTN, &number) != 0) fail("cannot name the pseudo-terminal");
+  slave_name_ = (terminals.empty() ? kSystems : terminals + "/") + std::to_string(number);
+  slave_ = Descriptor(::open(slave_name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   if (slave_.get() < 0) fail("cannot open " + slave_name_);
   termios raw{};
   if (::tcgetattr(slave_.get(), &raw) != 0) fail("cannot read the settings of " + slave_name_);
   ::cfmakeraw(&raw);
   if (::tcsetattr(slave_.get(), TCSANOW, &raw) != 0) fail("cannot set " + slave_name_ + " to raw mode");
   watch_ = Descriptor(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
-  if (watch_.get() < 0 || ::inotify_add_watch(watch_.get(), name.data(), IN_CLOSE) < 0)
+  if (watch_.get() < 0 || ::inotify_add_watch(watch_.get(), slave_name_.c_str(), IN_CLOSE) < 0)
     fail("cannot watch " + slave_name_);
-  make_link(link_, slave_name_);
+  make_link(link_, slave_name_, terminals);
 }
 
 Pty::~Pty() {

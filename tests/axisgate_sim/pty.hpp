@@ -12,8 +12,9 @@ namespace axisgate::simulated {
 
 class Pty final : public Port {
  public:
+  // `terminals`: the folder of a devpts to make it in, such as containers share; empty: the system's.
   // Throws std::runtime_error that names the path and what to change.
-  explicit Pty(const std::string& link);
+  explicit Pty(const std::string& link, const std::string& terminals = {});
   ~Pty() override;
 
   const std::string& far_end() const override { return slave_name_; }

@@ -58,7 +58,7 @@ void Simulator::plug(PortLine& port) {
   if (port.spec.kind == LineKind::can) {
     port.port = std::make_unique<CanSocket>(port.spec.path);
   } else {
-    port.port = std::make_unique<Pty>(port.spec.path);
+    port.port = std::make_unique<Pty>(port.spec.path, terminals_);
   }
   std::cout << "ready " << port.spec.path << " -> " << port.port->far_end() << ' ' << port.spec.describe() << std::endl;
 }

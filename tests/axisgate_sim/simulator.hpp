@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/axisgate_sim/line_spec.hpp"
@@ -38,6 +39,9 @@ struct LineTimings {
 
 class Simulator {
  public:
+  // `terminals`: where pseudo-terminals are made (pty.hpp).
+  explicit Simulator(std::string terminals = {}) : terminals_(std::move(terminals)) {}
+
   Time now() const;
 
   // Throws std::invalid_argument or std::runtime_error.
@@ -53,6 +57,7 @@ class Simulator {
   std::optional<Time> advance();
 
  private:
+  std::string terminals_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::map<std::string, PortLine> lines_;
 };

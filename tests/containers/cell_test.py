@@ -2,15 +2,19 @@
 """The set of deploy/compose.yaml: moved from outside, killed, restarted and unplugged while an axis moves. Run by tests/containers/run."""
 import json
 import os
+import re
+import shlex
 import signal
 import socket
+import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
-from compose import Set
+from engine import Cell
 from container_stage import ENGINE, SOURCE, USER, patient, plain_json
+from page_commands import of_page
 from modbus import ACTIVE, ALARM_ADOPTED, COMPLETED, DISABLED, LINK_DOWN, ONLINE, STANDSTILL, Client, Closed, Refused, mbpoll
 from processes import NEVER, until
 
@@ -21,7 +25,7 @@ RPM = 1000
 LIFT, FEEDER = 1, 2
 
 
-class Cell(unittest.TestCase):
+class CellTest(unittest.TestCase):
     """The whole set, once for all tests of a class: each leaves it as it found it."""
 
     def run(self, result=None):
@@ -40,11 +44,10 @@ class Cell(unittest.TestCase):
         cls.config = f"{folder.name}/gateway.json"
         with open(cls.config, "w", encoding="utf-8") as file:
             json.dump(patient(plain_json(f"{SOURCE}/deploy/container/compose.json")), file)
-        os.environ["AXISGATE_CONFIG"] = cls.config
-        cls.cell = Set(ENGINE, f"{SOURCE}/deploy/compose.yaml", "cell")
+        cls.cell = Cell(ENGINE, SOURCE, cls.config)
         cls.addClassCleanup(cls.cell.down)
         cls.cell.up()
-        lines = ENGINE("volume", "inspect", "--format", "{{.Mountpoint}}", cls.cell.full("lines"))
+        lines = ENGINE("volume", "inspect", "--format", "{{.Mountpoint}}", "cell_lines")
         cls.control = f"{lines}/control"
         # A set that does not come up fails once, not in each test.
         until("both axes are online", lambda: "axes online 2 of 2" in ENGINE.done(
@@ -118,6 +121,28 @@ class Cell(unittest.TestCase):
     def stop_feeder(self):
         self.feeder.command("disable")
         self.feeder.until(axis_state=DISABLED)
+
+    # What the script says.
+
+    def test_the_script_tells_what_runs_and_starts_no_second_set(self):
+        code, text = self.cell.typed("up")
+        self.assertEqual(code, 1)
+        self.assertRegex(text, "cell_gateway.*there already: deploy/container/cell down")
+        code, text = self.cell.typed("status")
+        self.assertEqual([name for name in self.cell.containers if not re.search(rf"^cell_{name} +Up ", text, re.MULTILINE)], [], text)
+        code, text = self.cell.typed("logs", "simulator")
+        self.assertRegex(text, "ready /lines/lift -> /terminals/[0-9]")
+        self.assertNotIn("listening on", text)
+        code, text = self.cell.typed("logs", "simulators")
+        self.assertEqual(code, 1)
+        self.assertIn("gateway", text)
+
+    def test_the_pages_looks_show_both_axes(self):
+        engine, *look = shlex.split(of_page("docs/containers.md", "podman exec cell_gateway"))
+        self.assertEqual(engine, "podman")
+        self.assertIn("axes online 2 of 2", ENGINE(*look))
+        lift = shlex.split(of_page("docs/containers.md", "mbpoll -0"))
+        until("the lift moves", lambda: len({subprocess.run(lift, capture_output=True, text=True, check=True).stdout for _ in range(2)}) == 2)
 
     # Seen from outside, and in other containers.
 
@@ -278,13 +303,16 @@ class Cell(unittest.TestCase):
         self.assert_feeder_moves()
         self.stop_feeder()
 
+    def child_of_gateway(self, name):
+        gateway = self.cell.gateway.pid()
+        with open(f"/proc/{gateway}/task/{gateway}/children", encoding="utf-8") as file:
+            children = [int(pid) for pid in file.read().split()]
+        return next(pid for pid in children if os.path.basename(os.readlink(f"/proc/{pid}/exe")) == name)
+
     def test_a_crash_of_the_topics_process_costs_topics_alone(self):
         self.start_feeder()
         follower = self.follow(self.cell.subscriber)
-        gateway = self.cell.gateway.pid()
-        with open(f"/proc/{gateway}/task/{gateway}/children", encoding="utf-8") as file:
-            child, = file.read().split()
-        os.kill(int(child), signal.SIGKILL)
+        os.kill(self.child_of_gateway("axisgate-dds"), signal.SIGKILL)
         self.cell.gateway.says("axisgate-dds .*(ended|killed|signal)")
         self.sees_position(follower, FEEDER, follower.now())
         self.assert_feeder_moves()

@@ -9,9 +9,9 @@ import sys
 SIMULATOR, SOURCE = (os.path.abspath(path) for path in sys.argv[2:4])
 sys.path[:0] = [f"{SOURCE}/tests/integration", f"{SOURCE}/tests/docs"]
 
-from compose import Engine  # noqa: E402
+from engine import Engine  # noqa: E402
 
-ENGINE = Engine(shlex.split(os.environ["AXISGATE_PODMAN"]))
+ENGINE = Engine(shlex.split(os.environ["AXISGATE_ENGINE"]))
 USER = 10001
 
 

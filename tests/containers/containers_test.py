@@ -6,7 +6,7 @@ import sys
 import unittest
 
 import container_stage  # noqa: F401  first: it finds the modules of the stories
-from cell_test import Cell  # noqa: F401
+from cell_test import CellTest  # noqa: F401
 from images_test import Images  # noqa: F401
 from one_gateway_test import ManyGateways, OneGateway  # noqa: F401
 

@@ -9,7 +9,7 @@ import tarfile
 import tempfile
 import unittest
 
-from compose import LIMITS, Container
+from engine import LIMITS, Container
 from container_stage import ENGINE, SOURCE, USER, plain_json
 
 MB = 1000 * 1000

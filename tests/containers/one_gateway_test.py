@@ -7,7 +7,7 @@ import shlex
 import tempfile
 import unittest
 
-from compose import LIMITS, Container
+from engine import LIMITS, Container
 from container_stage import ENGINE, SIMULATOR, SOURCE, USER, patient, plain_json
 from page_commands import of_page
 from processes import NEVER, Program, until
@@ -110,7 +110,7 @@ class OneGateway(unittest.TestCase):
     def test_a_wrong_configuration_ends_it_with_file_and_place(self):
         container = self.gateway("localhost/axisgate", buses=[])
         self.assertEqual(ENGINE("wait", container.name), "1")
-        self.assertIn("/etc/axisgate/gateway.json: /buses", container.text())
+        self.assertRegex(container.text(), r"/etc/axisgate/gateway\.json:\d+:\d+: /buses")
 
 
 class ManyGateways(unittest.TestCase):

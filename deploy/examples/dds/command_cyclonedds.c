@@ -34,7 +34,8 @@ static void beat(void) {
   dds_sleepfor(DDS_MSECS(50));
 }
 
-/* Sends the command with a new id, and again with the same id until a reply comes: it is carried out once. 1: done. */
+/* Sends the command with a new id, and again with the same id until a reply comes: it is carried out once. The
+   result: 2 done, 0 no reply. */
 static int ask(uint8_t what, uint32_t mask) {
   ++command.request_id;
   command.command = what;
@@ -51,8 +52,8 @@ static int ask(uint8_t what, uint32_t mask) {
       if (memcmp(reply.writer, heartbeat.client, sizeof reply.writer) != 0) continue;
       printf("command %u: result %u, detail 0x%x\n", what, reply.result, reply.detail);
       fflush(stdout);
-      if (reply.result != 21) return reply.result == 2; /* 2: done */
-      if (reply.detail >= 2) return reply.detail == 2;  /* 21: its reply was lost, and this was its result */
+      if (reply.result != 21) return reply.result;
+      if (reply.detail >= 2) return (int)reply.detail; /* 21: its reply was lost, and this was its result */
     }
   }
   return printf("command %u: no reply\n", what), 0;
@@ -85,9 +86,11 @@ int main(int argc, char **argv) {
   command.axis = (uint16_t)atoi(argv[3]);
   command.target_position = atof(argv[4]);
 
-  const int moves = ask(1, 0) && ask(6, axisgate_HAS_TARGET_POSITION);
+  const int enabled = ask(1, 0);
+  if (enabled == 7 || enabled >= 16) return 1; /* another client's: a disable of ours would stop that motor */
+  const int moves = enabled == 2 && ask(6, axisgate_HAS_TARGET_POSITION) == 2;
   while (!ended && moves) beat(); /* the reply says that the move has begun; AxisState, where it is */
-  const int good = ask(2, 0) && ask(13, 0);
+  const int good = ask(2, 0) == 2 && ask(13, 0) == 2;
   dds_delete(participant);
   return good ? 0 : 1;
 }

@@ -38,7 +38,8 @@ void beat() {
   usleep(50'000);
 }
 
-// Sends the command with a new id, and again with the same id until a reply comes: it is carried out once. 1: done.
+// Sends the command with a new id, and again with the same id until a reply comes: it is carried out once.
+// The result: 2 done, 0 no reply.
 int ask(std::uint8_t what, std::uint32_t mask = 0) {
   command.request_id(command.request_id() + 1);
   command.command(what);
@@ -51,8 +52,8 @@ int ask(std::uint8_t what, std::uint32_t mask = 0) {
       if (reply.writer() != heartbeat.client() || reply.request_id() != command.request_id()) continue;
       std::printf("command %u: result %u, detail 0x%x\n", what, reply.result(), reply.detail());
       std::fflush(stdout);
-      if (reply.result() != 21) return reply.result() == 2;  // 2: done
-      if (reply.detail() >= 2) return reply.detail() == 2;   // 21: its reply was lost, and this was its result
+      if (reply.result() != 21) return reply.result();
+      if (reply.detail() >= 2) return static_cast<int>(reply.detail());  // 21: its reply was lost, and this was its result
     }
   }
   return std::printf("command %u: no reply\n", what), 0;
@@ -93,7 +94,9 @@ int main(int argc, char** argv) {
   command.gateway_key(crc32(argv[2]));
   command.axis(static_cast<std::uint16_t>(std::atoi(argv[3])));
   command.target_position(std::atof(argv[4]));
-  const bool moves = ask(1) && ask(6, axisgate::HAS_TARGET_POSITION);
+  const int enabled = ask(1);
+  if (enabled == 7 || enabled >= 16) return 1;  // another client's: a disable of ours would stop that motor
+  const bool moves = enabled == 2 && ask(6, axisgate::HAS_TARGET_POSITION) == 2;
   while (ended == 0 && moves) beat();  // the reply says that the move has begun; AxisState, where it is
-  return ask(2) && ask(13) ? 0 : 1;
+  return ask(2) == 2 && ask(13) == 2 ? 0 : 1;
 }
