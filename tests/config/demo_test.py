@@ -4,14 +4,18 @@
 
 usage: demo_test.py SOURCE_FOLDER BUILD_FOLDER
 """
+import fcntl
+import html
 import os
 import pty
 import re
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 import unittest
 
@@ -21,6 +25,7 @@ from disturbance import UndisturbedTest  # noqa: E402 where the stories have it
 from processes import Ports  # noqa: E402
 
 LONGEST = 60
+COLUMNS, ROWS = 80, 24  # the smallest terminal that there is
 PORTS = Ports()
 
 
@@ -61,6 +66,7 @@ class Demo(UndisturbedTest):
         pid, terminal = pty.fork()
         if pid == 0:
             os.execve(f"{SOURCE}/deploy/demo", self.command(*options), self.environment)
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
         os.set_blocking(terminal, False)
         return pid, terminal
 
@@ -71,9 +77,15 @@ class Demo(UndisturbedTest):
             pass
         return "".join(so_far)
 
-    def wait_for_table(self, terminal):
+    def wait_for_table(self, terminal, holds="axes online 5 of 5"):
+        """The lines of the first whole frame with these words, colours and all."""
         screen = []
-        return until("a table", lambda: (text := self.read(terminal, screen)) and "axes online 5 of 5" in text and text)
+
+        def frame():
+            frames = re.findall(r"\x1b\[H(.*?)\x1b\[J", self.read(terminal, screen), re.S)
+            return next((re.split(r"\r*\n", one.replace("\x1b[K", "")) for one in frames if holds in one), None)
+
+        return until("a table", frame)
 
     def ended(self, pid, terminal=None):
         def look():
@@ -93,31 +105,48 @@ class Demo(UndisturbedTest):
                                text=True, timeout=LONGEST, check=False)
         self.assertEqual(ended.returncode, 0, ended.stderr + ended.stdout)
         self.assertGreaterEqual(ended.stdout.count("axes online 5 of 5"), 3)
-        self.assertIn(f"http://127.0.0.1:{self.page}/", ended.stdout.partition("axes online")[0])
-        for axis in (1, 4):
-            positions = set(re.findall(rf"^ +{axis} .*?profile position +(-?\d+)", ended.stdout, re.M))
+        self.assertNotIn("\x1b", ended.stdout)
+        for told in (f"http://127.0.0.1:{self.page}/", "axisgate explain no_comm_watchdog"):
+            self.assertIn(told, ended.stdout.partition("axes online")[0])
+        for axis, name in ((1, "lift"), (4, "press")):
+            positions = set(re.findall(rf"^ +{axis}  {name} .*?profile position +(-?\d+)", ended.stdout, re.M))
             self.assertGreaterEqual(len(positions), 2, f"axis {axis} does not move:\n" + ended.stdout)
         self.assert_nothing_left()
 
-    def test_what_it_prints_can_be_typed(self):
+    def test_what_it_shows_fits_is_no_failure_and_can_be_typed(self):
         pid, terminal = self.start_on_terminal("--no-move")
         screen = self.wait_for_table(terminal)
-        lines = dict(re.findall(r"^  (\S.*?)  +(mbpoll [^\r\n\x1b]*)", screen, re.M))
-        self.assertEqual(sorted(lines), ["enable axis 2", "its target, 5 turns", "read axis 1's position", "start the move"])
-        for line in ("read axis 1's position", "enable axis 2", "its target, 5 turns", "start the move"):
-            typed = subprocess.run(lines[line].split(), capture_output=True, text=True, timeout=LONGEST, check=False)
-            self.assertEqual(typed.returncode, 0, f"{lines[line]}\n{typed.stdout}{typed.stderr}")
-        position = lines["read axis 1's position"].replace("-r 102", "-q -r 202").split()
-
-        def arrived():
-            self.read(terminal, [])
-            return "50000" in subprocess.run(position, capture_output=True, text=True, timeout=LONGEST, check=False).stdout
-
-        until("axis 2 at its target", arrived)
+        plain = [re.sub(r"\x1b\[\d+m", "", line) for line in screen]
+        self.assertLessEqual(len(plain), ROWS)
+        self.assertLessEqual(max(map(len, plain)), COLUMNS, plain)
+        for name in ("lift", "feeder", "turntable", "press", "ejector"):
+            self.assertRegex("\n".join(plain), rf"(?m)^ +\d  {name} +online ")
+        self.assertIn("turns, ", "\n".join(plain))
+        self.assertFalse([line for line in screen if "\x1b[31m" in line], "red")
+        yellow = set(re.findall(r"\w+", " ".join(re.findall(r"\x1b\[33m(.*?)\x1b", "\n".join(screen)))))
+        self.assertEqual(yellow - {"alarms", "no", "comm", "watchdog"}, {"no_comm_watchdog", "not_homed", "cannot_deenergise"}, "how a machine is built")
+        below = "\n".join(plain[plain.index("") :])
+        explain = re.search(r"^yellow .*: (axisgate explain no_comm_watchdog)$", below, re.M)
+        self.assertIn("the drive does not notice", subprocess.run(f"{BUILD}/bin/{explain[1]}", shell=True, capture_output=True, text=True, check=True).stdout)
+        self.assertIn(f"http://127.0.0.1:{self.page}/", below)
+        move = " ".join(below.split()).partition("in another terminal: ")[2]
+        typed = subprocess.run(move.split(), capture_output=True, text=True, timeout=LONGEST, check=False)
+        self.assertEqual(typed.returncode, 0, f"{move}\n{typed.stdout}{typed.stderr}")
+        self.assertIn("reached: axis 2  5.0000 turns", typed.stdout)
+        self.wait_for_table(terminal, "       50000 ")
         os.write(terminal, b"\x03")
         self.assertEqual(self.ended(pid, terminal), 0)
         self.assert_nothing_left()
         os.close(terminal)
+        self.assert_picture_is_like(plain)
+
+    def assert_picture_is_like(self, screen):
+        """README's picture has the columns and names of today (deploy/demo_picture draws it)."""
+        with open(f"{SOURCE}/docs/demo.svg", encoding="utf-8") as picture:
+            drawn = [html.unescape(text) for text in re.findall(r">([^<]*)</text>", picture.read())]
+        header = next(line for line in screen if line.startswith("axis "))
+        self.assertIn(header, drawn)
+        self.assertIn(next(line for line in screen if line.startswith("yellow")), drawn)
 
     def test_ctrl_c_leaves_nothing_behind(self):
         pid, terminal = self.start_on_terminal()

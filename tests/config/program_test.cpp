@@ -4,6 +4,9 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
+#include <regex>
+#include <sstream>
+
 #include "tests/config/program.hpp"
 #include "tests/places.hpp"
 
@@ -22,9 +25,10 @@ TEST_F(Program, OpensNothingWhereTheConfigurationIsWrong) {
   ASSERT_GE(watch, 0);
   const std::string device = write("device", "");
   ASSERT_GE(inotify_add_watch(watch, device.c_str(), IN_OPEN), 0);
-  const std::string file = write("wrong.json", one_drive(device, 127, ""));
+  const std::string config = one_drive(device, 127, "");
+  const std::string file = write("wrong.json", config);
   const std::string told =
-      file +
+      file + fmt::format(":1:{}", config.find("\"node\"") + 1) +
       ": /buses/0/drives/0/node: 127 is the address with which Kinco's PC tool reaches every drive: "
       "give the drive a station number of 1 to 126 (object 100B:00 or its DIP switches)\n";
   for (const std::string command : {"run ", "check ", "map ", "commission "}) {
@@ -65,6 +69,57 @@ TEST_F(Program, CheckTellsOfALineWithTwoNames) {
   EXPECT_THAT(ended.out, HasSubstr("warning: " + line + " and " + name + " are one line, "));
 }
 
+/// What stands between `begins` and the end of the block.
+std::string block(const std::string& page, const std::string& begins) {
+  const std::size_t at = page.find(begins) + begins.size();
+  return page.substr(at, page.find("\n```", at) - at + 1);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST_F(Program, TheWorkedCaseOfUnitsAndLimitsIsWhatCheckSays) {
+  const std::string page = test::content(test::source_path("docs/configuration.md"));
+  const std::string config = block(page, "```json\n");
+  const Ended ended = run("check " + write("case.json", config));
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  std::istringstream said(block(page, "says:\n\n```text\n"));
+  int lines = 0;
+  for (std::string line; std::getline(said, line); ++lines) EXPECT_THAT(ended.out, HasSubstr("  " + line));
+  EXPECT_EQ(lines, 2);
+  EXPECT_THAT(ended.out, Not(HasSubstr("limits/")));
+
+  // | gear | metres of one motor turn | wanted | motor | "velocity" | |
+  std::istringstream rows(page.substr(page.find("| gear |")));
+  int counted = 0;
+  for (std::string row; std::getline(rows, row) && row.starts_with('|');) {
+    std::smatch cell;
+    if (!std::regex_match(row, cell,
+                          std::regex(R"(\|[^|]*\| ([\d.]+) \| ([\d.]+ m/s) \| (\d+ rpm) \| (\d+) \| ?(.*?) ?\|)")))
+      continue;
+    ++counted;
+    const std::string metres = "\"dds_unit\": \"m\", \"metres_per_rev\": \"" + cell.str(1) + "\", \"units_per_rev\"";
+    const std::string changed = replaced(replaced(config, "\"units_per_rev\"", metres), "\"velocity\": 3000000",
+                                         "\"velocity\": " + cell.str(4));
+    const Ended checked = run("check " + write("row.json", changed));
+    EXPECT_EQ(checked.code, 0) << checked.err;
+    const std::string rpm = cell.str(3);
+    EXPECT_THAT(checked.out, HasSubstr("velocity " + rpm + " (" + cell.str(2) + ")"));
+    if (const std::string odd = cell.str(5); odd.empty())
+      EXPECT_THAT(checked.out, Not(HasSubstr("limits/velocity")));
+    else
+      EXPECT_THAT(checked.out, HasSubstr("/limits/velocity: " + cell.str(4) + " is " + rpm + ", " + odd + ": "));
+  }
+  EXPECT_EQ(counted, 3);
+  // And the mistake at its head.
+  const std::string wrong = replaced(config, "\"axis\": 1,", "\"axis\": 1,\n        \"lease\": 2000,");
+  const std::string shown = block(page, "```text\n");
+  EXPECT_EQ(run("check " + write("gateway.json", wrong)).err,
+            (folder() / "gateway.json").string() + shown.substr(shown.find(':')));
+}
+
 TEST_F(Program, WhatAFullDiskHasNotTakenIsNotDone) {
   const std::string file = write("right.json", one_drive("/dev/ttyUSB0", 1, ""));
   for (const std::string command : {"check ", "profile check "}) {
@@ -95,6 +150,13 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
       {"move 127.0.0.1:1502 1", "TURNS"},
       {"move 127.0.0.1:1502 1 12,5", "'12,5' is no number of turns: write 12.5"},
       {"move 127.0.0.1 1 2", "'127.0.0.1' is no HOST:PORT"},
+      {"stop 127.0.0.1 1", "'127.0.0.1' is no HOST:PORT"},
+      {"stop 127.0.0.1:x 1", "'127.0.0.1:x' is no HOST:PORT"},
+      {"move lift", "TURNS"},
+      {"move lift up --enable", "'up' is no number of turns: write 12.5"},
+      {"stop", "AXIS"},
+      {"stop 0", "'0' is no axis: write its number, 1 to 499, or its name"},
+      {"stop 127.0.0.1:1502 1 --config x.json", "HOST:PORT"},
       {"jog 127.0.0.1:1502 1 --velocity -5", "'-5' is no speed"},
       {"jog 127.0.0.1:1502 1", "axisgate jog: needs a terminal"},
       {"enable 127.0.0.1:1502 500", "AXIS"},
@@ -110,6 +172,12 @@ TEST_F(Program, WrongCommandLinesEndWithTwoAndNameTheWord) {
     EXPECT_THAT(ended.err, HasSubstr(told)) << arguments;
     EXPECT_EQ(ended.out, "") << arguments;
   }
+}
+
+TEST_F(Program, ANameInPlaceOfHostPortIsToldOnceAndAWrongOptionIsNone) {
+  EXPECT_THAT(run("stop lift 1").err, testing::MatchesRegex("'lift' is no HOST:PORT: [^\n]*\n"));
+  EXPECT_THAT(run("stop lift --confg").err, testing::AllOf(HasSubstr("\"--config\""), Not(HasSubstr("HOST:PORT: "))));
+  EXPECT_EQ(run("stop lift 1 --help").code, 0);
 }
 
 TEST_F(Program, ExplainNamesTheNearestWord) {

@@ -30,7 +30,7 @@ std::vector<fs::path> pages() {
 /// What stands behind the name of the program, to the end of that command. `code`: a line of a block, or what stands in
 /// backquotes.
 std::vector<std::string> command_lines(const std::string& code) {
-  static const std::regex kCall(R"((?:^|[\s/;&|])axisgate( +[^|&;>#\s][^|&;>#]*))");
+  static const std::regex kCall(R"((?:^|bin/|localhost/|[\s;&|])axisgate( +[^|&;>#\s][^|&;>#]*))");
   std::vector<std::string> found;
   for (auto at = std::sregex_iterator(code.begin(), code.end(), kCall); at != std::sregex_iterator(); ++at)
     found.push_back((*at)[1].str());

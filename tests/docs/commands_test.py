@@ -66,7 +66,7 @@ def packages_of_ours():
 
 
 def apt(words):
-    known = re.search(r"^packages=\((.*?)\)", read("tests/setup"), re.DOTALL | re.MULTILINE)[1].split()
+    known = " ".join(re.findall(r"^\w+=\(([^)$]*)\)", read("tests/setup"), re.MULTILINE)).split()
     names = [word.rpartition("/")[2].partition("_")[0] for word in words[2:] if not word.startswith("-")]
     wrong = [name for name in names if name not in known and name not in packages_of_ours()]
     if wrong or words[1] not in ("install", "remove", "purge"):
@@ -76,7 +76,29 @@ def apt(words):
     return done.stderr if done.returncode else ""
 
 
+# What pages have it do beside the commands that tests/containers types, with the options as podman 4.3.1 has them.
+PODMAN = {"load": "", "tag": "", "rm": "", "generate": "--new --name --container-prefix --separator --restart-policy",
+          "create": "--name --read-only --cap-drop --security-opt --device --group-add -v --network -p --stop-timeout --ulimit"}
+
+
+def podman(words):
+    made = set(re.findall(r"axisgate[\w-]*", read("deploy/container/build")))
+    wrong = [word for word in words if word.startswith("localhost/") and re.split("[/:]", word)[1] not in made]
+    wrong += unknown_to(PODMAN.get(words[1], ""), words[2:])
+    return f"podman {words[1]} is not among {list(PODMAN)}, or knows no {wrong}" if wrong or words[1] not in PODMAN else ""
+
+
+def lingering(words):
+    return "" if words[1:] == ["enable-linger", "NAME"] else "nothing else is needed of it"
+
+
+def folder(words):
+    return "" if words[1:] == ["-p", "~/.config/systemd/user"] else "no folder that a page needs"
+
+
 def systemctl(words):
+    if words[1:] in (["--user", "daemon-reload"], ["--user", "enable", "--now", "gateway"], ["--user", "start", "gateway"], ["enable", "podman-restart"]):
+        return ""  # docs/containers.md: units that podman writes or brings along
     unit = read("deploy/systemd/axisgate.service")
     verb, *rest = [word for word in words[1:] if not word.startswith("-")]
     needs = {"enable": "[Install]", "reload": "ExecReload=", "restart": "ExecStart=", "status": "[Service]", "kill": "[Service]"}
@@ -97,7 +119,7 @@ def analyze(words):
 
 
 def manual(words):
-    made = {path.name.rpartition(".")[0] for path in (SOURCE / "deploy/debian").glob("*.[1-8]")} | packages_of_ours()
+    made = set(re.findall(r"share/man/man[1-8]/([\w.-]+)\.[1-8]\.gz", read("deploy/package.cmake"))) | packages_of_ours()
     return "" if words[1] in made else f"{words[1]} has no manual page"
 
 
@@ -151,7 +173,8 @@ def there(words):
 
 HELD = {"axisgate": ours, "axisgate-dds": ours_of_dds, "apt": apt, "apt-get": apt, "systemctl": systemctl, "journalctl": tool, "stat": tool, "dpkg-deb": tool,
         "systemd-analyze": analyze, "man": manual, "cmake": cmake, "ctest": cmake, "kubectl": kubernetes, "docker": compose, "fastdds": discovery,
-        "ros2": ros2, "export": export, "kill": signal, "editor": there}
+        "ros2": ros2, "export": export, "kill": signal, "editor": there,
+        "podman": podman, "gunzip": tool, "loginctl": lingering, "mkdir": folder}
 
 
 def typed_pages():
@@ -217,6 +240,7 @@ class PagesCommands(unittest.TestCase):
                         "systemctl enable gateway", "systemctl mask axisgate", "systemctl enable --wrong axisgate", "journalctl --wrong axisgate", "man axisgate-mqtt",
                         "cmake --preset wrong", "kubectl apply -f other.json", "kubectl exec CELL-1 -- x", "docker compose -f deploy/nothing.yaml up", "fastdds discovery -z 0",
                         "fastdds shm", "ros2 topic echo /nothing", "ros2 topic pub /lift/enable std_msgs/msg/Int8 x", "export WRONG=1", "kill -1", "podman run x",
+                        "podman load --wrong x", "podman tag localhost/axisgate-mqtt:1 x", "loginctl disable-linger NAME", "systemctl --user enable other", "mkdir x",
                         "axisgate check x && deploy/nothing", "axisgate-dds topics --wrong", "axisgate-dds nothing", "axisgate-sim --line ./a:jd@1", "cmake --build other", "editor /etc/other"):
             self.assertTrue(known.done_with("docs/installation.md", True, command)[1], command)
 

@@ -171,6 +171,18 @@ def blocks(root, name):
     return table(["block", "inputs", "outputs"], [[block, *column] for (block, _), column in zip(found, columns)])
 
 
+def errors(root, _):
+    """ErrorID of the blocks: those that are words of their own, as docs/troubleshooting.md has them, behind rows and results."""
+    page = (root / "docs/troubleshooting.md").read_text(encoding="utf-8")
+    sections = dict(re.findall(r"^## (\w[\w ]*): [^\n]*\n\n[^\n]*\n[^\n]*\n(.*?)(?=\n\n|\Z)", page, re.DOTALL | re.MULTILINE))
+    own, results = ([[cell.strip() for cell in line.strip("| ").split(" |")] for line in sections[name].strip().splitlines()] for name in ("ErrorID", "result"))
+    last = max(int(number) for number, name, *_ in results if "(DDS)" not in name)
+    rows = [[f"16#0003 to 16#{last:04X}", "result", "the result in register 25: `axisgate explain 16#0009` says more of result 9", "", "7: another client owns the axis; 9: not enabled, faulted or stop-latched"]]
+    for number, name, meaning, causes, remedy in own:
+        rows.append(["16#0101 to 16#01FF" if number == "16#0100" else number, name, meaning, causes, remedy])
+    return table(["ErrorID", "what", "meaning", "usual causes", "what to do"], rows)
+
+
 PRINTED = {"quantities": quantities, "protocols": protocols_of, "constants": constants, "checks": checks, "setup": setup,
            "faults": faults, "homing": homing}
 
@@ -178,5 +190,5 @@ PRINTED = {"quantities": quantities, "protocols": protocols_of, "constants": con
 def printed(root, what):
     """The text of `<!-- printed: what -->`: "checks of kinco-jd", or "tags of coils"."""
     kind, _, name = what.partition(" of ")
-    of_files = {"tags": tags, "blocks": blocks}
+    of_files = {"tags": tags, "blocks": blocks, "errors": errors}
     return of_files[kind](root, name) if kind in of_files else PRINTED[kind](profile(root, name))

@@ -4,7 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
-SOURCE = Path(__file__).absolute().parents[2]
+SOURCE = Path(__file__).resolve().parents[2]
 # Who reads them in backquotes takes them for commands as well.
 IN_BACKQUOTES = re.compile(r"`((?:[A-Z_]+=[^\s`]+ )*(?:[a-z][\w.-]*|(?:deploy|tests|build)/[\w./-]+) [^`]+)`")
 NO_COMMAND = re.compile(r'[]{}["]|.*:=')  # JSON, structured text

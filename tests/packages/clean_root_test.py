@@ -9,10 +9,12 @@ import re
 import socket
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
 from clean_root import CleanRoot, Network, Program, Unit, run, until
+from installed_commands import MANUAL, Installed
 
 SOURCE, BUILD, WORK, TAR = (Path(path).absolute() for path in sys.argv[1:5])
 sys.path.insert(0, f"{SOURCE}/tests/docs")
@@ -75,6 +77,37 @@ class UdevTest(unittest.TestCase):
         # Whoever copies the example has no line of it misread.
         example = (self.root.path / "usr/share/doc/axisgate/examples/70-axisgate.rules").read_text(encoding="utf-8")
         self.assertNotRegex(self.shown(example), "70-axisgate.rules:[^\\n]*(nvalid|nknown|ignoring)")
+
+
+class ManualTest(unittest.TestCase):
+    """The manual of the packages, on a computer that has nothing but them and what its pages have installed."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.root = CleanRoot(WORK / "manual", TAR)
+        cls.addClassCleanup(cls.root.close)
+        debs, begin = make(), time.monotonic()
+        cls.root.apt("update")
+        cls.root.apt("install", *(cls.root.put(debs[name]) for name in ("axisgate", "axisgate-sim")))
+        print(f"measured: axisgate and axisgate-sim installed in {time.monotonic() - begin:.1f} s, with apt-get update", file=sys.stderr)
+        cls.root.apt("install", *(cls.root.put(debs[name]) for name in ("axisgate-dds", "axisgate-web")))
+        # What the pages call, and what the story that types them is written in.
+        cls.root.apt("install", "mbpoll", "socat", "python3", "python3-pymodbus", "python3-serial-asyncio", "gcc", "libc6-dev", "libmodbus-dev", "pkg-config")
+        for path in SOURCE.glob("tests/integration/*.py"):
+            to = cls.root.path / "root/stories" / path.name
+            to.parent.mkdir(exist_ok=True)
+            to.write_bytes(path.read_bytes())
+
+    def test_each_command_is_one_of_the_packages(self):
+        count, wrong = Installed([self.root.path], self.root.run).mistakes()
+        self.assertEqual(wrong, [])
+        self.assertGreater(count, 150)
+
+    def test_what_is_typed_shows_what_the_pages_have(self):
+        for what in ("Manual.test_quick_start", "Manual", "Drives"):
+            begin = time.monotonic()
+            self.root.run("/usr/bin/python3", "-B", "/root/stories/manual_test.py", "/usr/bin/axisgate", "/usr/bin/axisgate-sim", f"/{MANUAL}", what)
+            print(f"measured: {what} typed in {time.monotonic() - begin:.1f} s", file=sys.stderr)
 
 
 class CleanRootTest(unittest.TestCase):
