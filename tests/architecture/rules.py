@@ -67,13 +67,13 @@ ONE_PLACE = {
     r"<termios\.h>|<sys/inotify\.h>|<linux/serial\.h>": ("adapters/serial/", "adapters/asio/key_mode"),
     r"<valijson/": ("gateway/profile/json/json_schema.cpp",),
     r"<CLI/": ("gateway/commands/command_", "gateway/upstream/dds_process/options.cpp", "gateway/upstream/web_process/options.cpp", "gateway/manual/command_tree.cpp"),
-    r"<boost/beast": ("gateway/upstream/web_process/http/header_parser.cpp", "gateway/commands/record/page_client.cpp"),
+    r"<boost/beast": ("gateway/upstream/web_process/http/header_parser.cpp", "gateway/commands/record/page_client.cpp", "gateway/commands/support/archive.cpp"),
     r"<seccomp\.h>": ("gateway/upstream/web_process/system/confinement.cpp",), r"<prometheus/": ("gateway/upstream/web_process/metrics/families.",),
 }
 
 # Files that decide: bytes, frames and instants go in, actions come out. The exceptions are shells.
 DECIDING = ("gateway/core/", "gateway/image/", "gateway/listing/", "gateway/model/", "gateway/profile/", "gateway/drive/", "gateway/config/", "gateway/check/",
-            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/record/plan/", "gateway/commands/scan/plan/", "gateway/commands/try/plan/",
+            "gateway/compose/", "gateway/commands/commission/commission_plan", "gateway/commands/manual/plan/", "gateway/commands/parameters/plan/", "gateway/commands/record/plan/", "gateway/commands/scan/plan/", "gateway/commands/support/plan/", "gateway/commands/try/plan/",
             "gateway/commands/view/", "gateway/upstream/modbus_tcp/", "gateway/upstream/dds/", "gateway/upstream/dds_link/", "gateway/upstream/link/", "gateway/upstream/web_link/", "gateway/upstream/web/", "gateway/upstream/feed/",
             *(f"gateway/upstream/web_process/{room}/" for room in ("time", "values", "history", "capture", "http", "picture", "metrics", "files", "api", "stream")),
             "gateway/upstream/host/restart_", "adapters/bus/", "adapters/kinco/", "adapters/modbus_rtu/", "adapters/canopen/", "adapters/keya/", "adapters/can/")
