@@ -369,7 +369,8 @@ constexpr auto kWords = std::to_array<Word>({
      "does, also after a loss of the drive",
      "the stop was answered with exception 0x0A or 0x0B or result 11; until it is done, starts are refused with result "
      "9",
-     "repair cable or power, it is carried out by itself; the motor stands when register 31 shows it, and not before"},
+     "repair cable or power, it is carried out by itself; the motor stands when registers 4 and 5, velocity_actual, "
+     "read 0, and not before"},
     {term, 9, "adopted",
      "found enabled when the gateway started or the drive came back: the motor goes on with what it did until somebody "
      "stops or disables it, or its lease ends",
