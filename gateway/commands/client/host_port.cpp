@@ -5,6 +5,8 @@
 
 #include <charconv>
 
+#include "gateway/config/config_endpoint.hpp"
+
 namespace axisgate::commands {
 
 std::optional<HostPort> parse_host_port(std::string_view text) {
@@ -20,6 +22,11 @@ std::optional<HostPort> parse_host_port(std::string_view text) {
   HostPort place{std::string(host), 0};
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), place.port);
   if (error != std::errc() || end != digits.data() + digits.size() || place.port == 0) return std::nullopt;
+  return place;
+}
+
+HostPort reached_here(HostPort place) {
+  if (config::is_any_address(place.host)) place.host = place.host == "::" ? "::1" : "127.0.0.1";
   return place;
 }
 

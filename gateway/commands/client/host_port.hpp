@@ -15,6 +15,8 @@ struct HostPort {
   std::uint16_t port = 0;
 };
 [[nodiscard]] std::optional<HostPort> parse_host_port(std::string_view text);
+/// As a program on this computer reaches it: "0.0.0.0" and "[::]" are the loopback.
+[[nodiscard]] HostPort reached_here(HostPort place);
 /// "'x' is no HOST:PORT: write ..."
 [[nodiscard]] std::string host_port_mistake(std::string_view text);
 

@@ -25,9 +25,7 @@ std::optional<HostPort> listener_in(const Json& listeners) {
     if (!place) continue;
     if (is_own(place->host)) return place;
     if (first) continue;
-    if (place->host == "0.0.0.0") place->host = "127.0.0.1";
-    if (place->host == "::") place->host = "::1";
-    first = place;
+    first = reached_here(*std::move(place));
   }
   return first;
 }

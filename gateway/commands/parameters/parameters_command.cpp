@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 
 #include "gateway/commands/common/config_faults.hpp"
+#include "gateway/commands/common/new_file.hpp"
 #include "gateway/commands/parameters/parameter_bench.hpp"
 #include "gateway/commands/profile/eds_file.hpp"
 
@@ -36,18 +36,6 @@ std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
 }
 
-/// Why it could not be written; empty: it is, as a new file.
-std::string write_new(const std::string& path, const std::string& text) {
-  std::FILE* const file = std::fopen(path.c_str(), "wx");
-  if (file == nullptr) return std::strerror(errno);
-  const bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool closed = std::fclose(file) == 0;
-  if (whole && closed) return "";
-  const std::string why = std::strerror(errno);
-  std::remove(path.c_str());
-  return why;
-}
-
 /// One call of the command, on a drive that answers.
 class Work {
  public:
@@ -58,8 +46,8 @@ class Work {
     if (!read_all()) return 1;
     ParameterFile file{AXISGATE_VERSION, utc_now(), axis.number, axis.name, bench_.facts()};
     file.objects = saved(parameters_, readings_);
-    if (const std::string why = write_new(options_.file, json_text(file)); !why.empty())
-      return refuse(fmt::format("{} could not be written: {}", options_.file, why));
+    if (const int error = write_new_file(options_.file, json_text(file)); error != 0)
+      return refuse(fmt::format("{} could not be written: {}", options_.file, std::strerror(error)));
     const auto unread = static_cast<std::size_t>(
         std::ranges::count_if(readings_, [](const Reading& reading) { return !reading.number; }));
     say(fmt::format("{} is written: {} objects{}", options_.file, readings_.size() - unread,

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "gateway/commands/common/config_faults.hpp"
+#include "gateway/commands/common/new_file.hpp"
 #include "gateway/commands/profile/eds_file.hpp"
 #include "gateway/profile/eds/eds_compare.hpp"
 #include "gateway/profile/read/profile_loader.hpp"
@@ -19,16 +20,10 @@ namespace {
 
 /// Why it could not be written; none: it is.
 std::optional<std::string> write_new(const std::string& path, const std::string& text) {
-  std::FILE* const file = std::fopen(path.c_str(), "wx");
-  if (file == nullptr)
-    return errno == EEXIST
-               ? std::string("is there already, and is not written over: move it away, or give --name or -o")
-               : std::string("cannot be written: ") + std::strerror(errno);
-  const bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool closed = std::fclose(file) == 0;
-  if (whole && closed) return std::nullopt;
-  std::remove(path.c_str());
-  return std::string("cannot be written: ") + std::strerror(errno);
+  const int error = write_new_file(path, text);
+  if (error == 0) return std::nullopt;
+  return error == EEXIST ? std::string("is there already, and is not written over: move it away, or give --name or -o")
+                         : std::string("cannot be written: ") + std::strerror(error);
 }
 
 /// What stands against the file as it is now.

@@ -22,7 +22,6 @@
 #include "gateway/commands/record/page_client.hpp"
 #include "gateway/commands/record/plan/pieces.hpp"
 #include "gateway/commands/record/plan/request.hpp"
-#include "gateway/config/config_endpoint.hpp"
 #include "gateway/config/config_loader.hpp"
 
 namespace axisgate::commands {
@@ -229,7 +228,7 @@ std::optional<HostPort> page_of(const RecordOptions& options) {
     return std::nullopt;
   }
   auto place = parse_host_port(web->listen);
-  if (place && config::is_any_address(place->host)) place->host = place->host == "::" ? "::1" : "127.0.0.1";
+  if (place) place = reached_here(*std::move(place));
   return place;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/commands/support/support_command.hpp"
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -13,6 +12,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "gateway/commands/common/new_file.hpp"
 #include "gateway/commands/support/archive.hpp"
 #include "gateway/commands/support/gathering.hpp"
 #include "gateway/commands/support/plan/manifest.hpp"
@@ -25,6 +25,7 @@ namespace {
 using namespace support;
 
 constexpr mode_t kOwnerAlone = 0600;
+constexpr const char* kIsThere = "is there already, and is not written over";
 
 Redaction redaction_of(const std::string& config) {
   const profile::FileRead read = profile::read_file(config);
@@ -40,24 +41,6 @@ std::string folder_of(const std::string& output) {
   name = name.substr(0, name.find(".tar"));
   constexpr std::size_t kRoomForFiles = 40;
   return name.substr(0, kLongestName - kRoomForFiles);
-}
-
-/// Only a file that is made here is ever removed. Empty: all of it is written.
-std::string write_new(const std::string& path, std::string_view bytes) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerAlone);
-  if (file < 0) return errno == EEXIST ? "is there already, and is not written over" : std::strerror(errno);
-  int error = 0;
-  while (!bytes.empty() && error == 0) {
-    const ssize_t count = ::write(file, bytes.data(), bytes.size());
-    if (count >= 0)
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    else if (errno != EINTR)
-      error = errno;
-  }
-  if (::close(file) != 0 && error == 0) error = errno;
-  if (error == 0) return {};
-  ::unlink(path.c_str());
-  return std::strerror(error);
 }
 
 bool agreed(const SupportOptions& options, const std::string& output) {
@@ -83,7 +66,7 @@ int run(const SupportOptions& options) {
     return 1;
   };
   struct stat there {};
-  if (::lstat(output.c_str(), &there) == 0) return refuse("is there already, and is not written over");
+  if (::lstat(output.c_str(), &there) == 0) return refuse(kIsThere);
   fmt::print(stderr, "axisgate support: gathering, a minute at most\n");
   const Redaction redaction = redaction_of(options.config);
   const std::vector<Gathered> files =
@@ -97,7 +80,8 @@ int run(const SupportOptions& options) {
     if (!file.text.empty()) archived.push_back({folder + "/" + file.file, file.text});
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now.time_since_epoch()).count();
   const std::string bytes = gzip_of(tar_of(archived, static_cast<std::uint64_t>(seconds)));
-  if (const std::string why = write_new(output, bytes); !why.empty()) return refuse(why);
+  if (const int error = write_new_file(output, bytes, kOwnerAlone); error != 0)
+    return refuse(error == EEXIST ? kIsThere : std::strerror(error));
   fmt::print("{} is written, {} bytes: look into it before you give it away\n", output, bytes.size());
   return 0;
 }

@@ -30,9 +30,7 @@ json list_at(const json& object, const char* key) {
 std::optional<HostPort> reached(std::string_view listen) {
   const auto endpoint = config::parse_endpoint(listen);
   if (!endpoint) return std::nullopt;
-  HostPort place{endpoint->host, endpoint->port};
-  if (config::is_any_address(place.host)) place.host = place.host == "::" ? "::1" : "127.0.0.1";
-  return place;
+  return reached_here({endpoint->host, endpoint->port});
 }
 
 }  // namespace
